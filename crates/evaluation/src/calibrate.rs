@@ -13,9 +13,7 @@ use cloudtouch::{
 use cloudtouch_testkit::family::Kind;
 
 use crate::answers::Answers;
-use crate::measures::{
-    Axis, Bin, Sample, SurfaceSample, border, calibration_error, fit_surface, observed_within,
-};
+use crate::measures::{Axis, SurfaceSample, border, fit_surface};
 use crate::methods::{Fitted, Ours};
 use crate::sweep::{Asked, ORACLE, OURS, Plan, ask};
 
@@ -78,30 +76,12 @@ fn ordinary(answers: &Answers, command: String) -> Result<Fitted> {
     })
 }
 
-/// The same with what is beyond the noise of ordinary scenes fitted to answers about denser ones, and how
-/// stated and true differ there before and after, each family by a judge that does not know it.
+/// The same with what is beyond the noise of ordinary scenes fitted to answers about denser ones.
 fn beyond(mut fitted: Fitted, answers: &Answers, command: &str) -> Result<Fitted> {
-    let before = fitted.clone();
     fitted.command = format!("{} and {command} --dense", fitted.command);
     fitted.all = fit_beyond(fitted.all, &records(answers, OURS, None)?)?;
     for (family, judge) in &mut fitted.without {
         *judge = fit_beyond(*judge, &records(answers, OURS, Some(family))?)?;
-    }
-    let [.., more, most] = NOISE_KNOTS;
-    for [from, to] in [[NOISE_KNOTS[ORDINARY - 1], more], [more, most]] {
-        for (name, fit) in [("before", &before), ("after", &fitted)] {
-            let asked = answers.rows.iter().filter(|(of, _)| of.kind != Kind::Adversarial);
-            let said = asked.filter_map(|(of, said)| {
-                let evidence = said[0].and_then(|said| said.evidence)?;
-                let odds = fit.to_judge(of.family, false).log_odds(&evidence);
-                let is_here = (from..to).contains(&evidence.noise_over_spacing);
-                is_here.then_some((1.0 / (1.0 + (-odds).exp()), of.collides))
-            });
-            let sample = Sample::of_probabilities(said);
-            let Bin { mean, observed, count } = observed_within(&sample, 0.0..1.1);
-            let (bias, error) = (mean - observed, calibration_error(&sample, &sample.ones()));
-            println!("// {from} to {to}, {count} poses, {name}: off by {bias:+.3}, ECE {error:.3}");
-        }
     }
     Ok(fitted)
 }

@@ -8,7 +8,7 @@ mod surface;
 
 pub use bootstrap::{Clusters, Estimate};
 pub use calibration::{Bin, brier, calibration_error, chance_error, observed_within, reliability};
-pub use rank::{auc, false_stops};
+pub use rank::{auc, false_stops, wrong_from};
 pub use sample::Sample;
 pub use surface::{Axis, Sample as SurfaceSample, border, fit_surface};
 
@@ -23,19 +23,13 @@ pub enum Measure {
     CalibrationError,
     /// Free poses stopped while at most this share of the collisions is missed.
     FalseStops(f64),
+    /// Free poses stopped from such a score on.
+    Stops(f64),
+    /// Collisions below such a score.
+    Misses(f64),
 }
 
 impl Measure {
-    /// Its name in tables.
-    pub fn name(self) -> String {
-        match self {
-            Self::Auc => "AUC".into(),
-            Self::Brier => "Brier".into(),
-            Self::CalibrationError => "ECE".into(),
-            Self::FalseStops(rate) => format!("false stops at {} % misses", 100.0 * rate),
-        }
-    }
-
     /// Its value; `weights` say how often each answer counts.
     pub fn of(self, sample: &Sample, weights: &[f64]) -> f64 {
         match self {
@@ -43,6 +37,11 @@ impl Measure {
             Self::Brier => brier(sample, weights),
             Self::CalibrationError => calibration_error(sample, weights),
             Self::FalseStops(rate) => false_stops(sample, weights, rate),
+            Self::Stops(from) | Self::Misses(from) => {
+                let [wrong, all] = wrong_from(sample, weights, from);
+                let of = usize::from(matches!(self, Self::Misses(_)));
+                wrong[of] / all[of]
+            }
         }
     }
 }

@@ -33,6 +33,17 @@ pub fn false_stops(sample: &Sample, weights: &[f64], miss_rate: f64) -> f64 {
     f64::NAN
 }
 
+/// Free poses whose score is at or above a threshold, and collisions below it; and how many there are of either.
+pub fn wrong_from(sample: &Sample, weights: &[f64], from: f64) -> [[f64; 2]; 2] {
+    let (mut wrong, mut all) = ([0.0; 2], [0.0; 2]);
+    for ((&collides, &score), weight) in sample.collides.iter().zip(&sample.scores).zip(weights) {
+        let of = usize::from(collides);
+        all[of] += weight;
+        wrong[of] += if (score >= from) == collides { 0.0 } else { *weight };
+    }
+    [wrong, all]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,6 +62,15 @@ mod tests {
         let weights = [2.0, 1.0, 1.0, 1.0, 0.0, 1.0];
         assert!((auc(&sample, &weights) - 8.5 / 9.0).abs() < 1e-12);
         assert!(auc(&sample, &[0.0; 6]).is_nan());
+    }
+
+    #[test]
+    fn stops_and_misses_of_a_threshold_are_counted_apart() {
+        let sample = known();
+        // .4 is a collision once, and free once; .2 is missed.
+        assert_eq!(wrong_from(&sample, &sample.ones(), 0.4), [[1.0, 1.0], [3.0, 3.0]]);
+        let weights = [1.0, 0.0, 2.0, 0.0, 1.0, 0.0];
+        assert_eq!(wrong_from(&sample, &weights, 0.3), [[2.0, 1.0], [2.0, 2.0]]);
     }
 
     #[test]

@@ -33,14 +33,6 @@ impl Sample {
         vec![1.0; self.collides.len()]
     }
 
-    /// Free poses it calls collisions and collisions it calls free, from a score of ½ on.
-    pub fn wrong(&self) -> [usize; 2] {
-        [false, true].map(|collides| {
-            let answers = self.collides.iter().zip(&self.scores);
-            answers.filter(|&(&c, &score)| c == collides && (score >= 0.5) != c).count()
-        })
-    }
-
     /// The groups of equal score, rising: the weights of the collisions and of the free poses.
     pub(super) fn groups(&self, weights: &[f64]) -> impl Iterator<Item = [f64; 2]> {
         let score = |i: u32| self.scores[i as usize];

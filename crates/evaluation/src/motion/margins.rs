@@ -65,15 +65,13 @@ fn fit_margins(answers: &Answers) -> Result<Vec<Vec<f64>>> {
 }
 
 fn margins(answers: &Answers) -> Findings {
-    let mut table =
-        Table::new(["pair", "margin", "poses", "nearer", "ECE", "worst family", "its ECE"]);
+    let mut table = Table::new(["pair", "margin", "poses", "nearer", "ECE"]);
     let mut targets = Vec::new();
     for pair in Pair::ALL {
         for margin in MARGINS {
             let (name, nearer) = (name(margin), within(answers, margin));
             let judged = Judged::pick(&nearer, &[&name], ordinary(pair));
             let error = judged.error_above_chance(&name).clamp(0.0, 1.0);
-            let (family, worst) = nearer.worst_calibrated(pair, &name);
             let of = judged.questions();
             table.row([
                 pair.to_string(),
@@ -81,8 +79,6 @@ fn margins(answers: &Answers) -> Findings {
                 of.len().to_string(),
                 format!("{:.2}", share(of.iter().map(|q| q.collides))),
                 format!("{error:.3}"),
-                family.to_owned(),
-                format!("{:.3}", worst.clamp(0.0, 1.0)),
             ]);
             let what = format!("{pair}, {name}: ECE ≤ {MOST_ERROR}");
             targets.push(Target::new(what, format!("{error:.3}"), error <= MOST_ERROR));

@@ -1,4 +1,4 @@
-//! Normals of contacts, against the shortest way apart of the exact surfaces.
+//! Normals of contacts, against the shortest way out of the exact overlap.
 
 use anyhow::Result;
 use cloudtouch::{Query, QuerySettings};
@@ -18,19 +18,16 @@ use crate::statistics::{median, share};
 use crate::sweep::Scenes;
 
 /// Classes of poses by their signed distance, from and to, m.
-const CLASSES: [(&str, f64, f64); 3] = [
-    ("free by up to 2 cm", 0.0, 0.02),
-    ("overlap to 2 cm", -0.02, 0.0),
-    ("2 to 10 cm", -0.1, -0.02),
-];
+const CLASSES: [(&str, f64, f64); 2] =
+    [("overlap to 2 cm", -0.02, 0.0), ("2 to 10 cm", -0.1, -0.02)];
 /// An object that moves along the normal by the exact depth, a fourth of it and this, m, is to be free.
 const SPARE: f64 = 0.005;
 /// In so many overlaps of either class.
 const FREED: [f64; 2] = [0.9, 0.7];
 const POINTS: usize = 10_000;
 
-const TEXT: &str = "The normal of the likeliest contact beside the way the exact surfaces are apart, or the \
-shortest translation found to free them; ordinary families, 10,000 points, poses with a contact. *Angle*: \
+const TEXT: &str = "The normal of the likeliest contact beside the shortest translation found to free the exact \
+surfaces; ordinary families, 10,000 points, poses with a contact. *Angle*: \
 median between the two. *Freed*: the object is out of the exact overlap after moving along the normal by \
 the length of that translation, a fourth more and 5 mm.";
 
@@ -62,14 +59,13 @@ pub(super) fn measure(draws: u32, poses: usize) -> Findings {
             for (class, from, to) in CLASSES {
                 let of: Vec<&Told> = of_class(from, to).filter(|t| t.std == std).collect();
                 let angles: Vec<f64> = of.iter().map(|told| told.angle).collect();
-                let freed =
-                    if to > 0.0 { "-".into() } else { format!("{:.2}", freed(of.iter().copied())) };
+                let freed = format!("{:.2}", freed(of.iter().copied()));
                 let (noise, count) = (format!("{:.0} mm", 1e3 * std), of.len().to_string());
                 let angle = format!("{:.0}°", median(&angles));
                 table.row([pair.to_string().as_str(), &noise, class, &count, &angle, &freed]);
             }
         }
-        for ((class, from, to), least) in CLASSES.into_iter().skip(1).zip(FREED) {
+        for ((class, from, to), least) in CLASSES.into_iter().zip(FREED) {
             let (share, percent) = (freed(of_class(from, to)), 100.0 * least);
             let what = format!("{pair}, {class}: freed along the normal in ≥ {percent:.0} %");
             targets.push(Target::new(what, format!("{:.0} %", 100.0 * share), share >= least));
@@ -86,7 +82,7 @@ fn of_draw(family: &Scenes, draw: u64, poses: usize) -> Result<Vec<Told>> {
     let from = seed::derive(SEED, family.number(), draw);
     let scene = family.scene(from);
     let poses = scene.poses(poses, seed::derive(from, 1, 0));
-    let ways: Vec<_> = poses.iter().map(|pose| way_apart(&scene, pose)).collect();
+    let ways: Vec<_> = poses.iter().map(|pose| way_out(&scene, pose)).collect();
     let query = Query::new(QuerySettings::default())?;
     let mut told = Vec::new();
     for std in STDS {
@@ -105,7 +101,7 @@ fn of_draw(family: &Scenes, draw: u64, poses: usize) -> Result<Vec<Told>> {
                 let Some(contact) = report.contacts.first() else { continue };
                 let normal = contact.normal_a_to_b;
                 let angle = normal.dot(way).clamp(-1.0, 1.0).acos().to_degrees();
-                let length = -1.25 * signed_distance.min(0.0) + SPARE;
+                let length = -1.25 * signed_distance + SPARE;
                 let moved = Pose::from_translation(normal * length).after(scene_from_object);
                 let is_freed = !scene.a.touches(&scene.b, &moved, scene.touch);
                 told.push(Told { pair, std, signed_distance: *signed_distance, angle, is_freed });
@@ -115,28 +111,17 @@ fn of_draw(family: &Scenes, draw: u64, poses: usize) -> Result<Vec<Told>> {
     Ok(told)
 }
 
-/// The direction from A to B where they are apart, and else that of the shortest way out; `None` beyond the
-/// classes, and where the way is not known.
-fn way_apart(scene: &FamilyScene, labelled: &LabelledPose) -> Option<Vector3> {
-    /// Of the differences, m.
-    const STEP: f64 = 1e-5;
+/// The shortest way out of an overlap; `None` beyond the classes, and where the way is not known.
+fn way_out(scene: &FamilyScene, labelled: &LabelledPose) -> Option<Vector3> {
+    /// Beyond what is known, m.
+    const SPARE: f64 = 1e-5;
     let (pose, distance) = (&labelled.scene_from_object, labelled.signed_distance);
-    let (_, _, nearest) = CLASSES[0];
-    let (_, deepest, _) = CLASSES[2];
-    if !(deepest..nearest).contains(&distance) {
+    let (_, deepest, _) = CLASSES[1];
+    if !(deepest..0.0).contains(&distance) {
         return None;
     }
-    if labelled.in_collision {
-        // As long as is known, and a little longer: its direction is not.
-        let known = WayOut { direction: Vector3::zeros(), length: -1.05 * distance + STEP };
-        let way = scene.a.shortest_way_out(&scene.b, pose, scene.touch, known);
-        return way.direction.try_normalize(0.0);
-    }
-    let at = |axis, step| {
-        let moved = Pose::from_translation(Vector3::ith(axis, step)).after(pose);
-        scene.a.distance(&scene.b, &moved)
-    };
-    let slope = |axis, _| (at(axis, STEP) - at(axis, -STEP)) / (2.0 * STEP);
-    // In a corner, where two ways are as short, it has none.
-    Vector3::from_fn(slope).try_normalize(0.5)
+    // As long as is known, and a little longer: its direction is not.
+    let known = WayOut { direction: Vector3::zeros(), length: -1.05 * distance + SPARE };
+    let way = scene.a.shortest_way_out(&scene.b, pose, scene.touch, known);
+    way.direction.try_normalize(0.0)
 }

@@ -10,7 +10,7 @@ use cloudtouch_testkit::scene;
 
 use crate::SEED;
 use crate::answers::{Pair, Said};
-use crate::measures::{Sample, brier};
+use crate::measures::{Sample, brier, wrong_from};
 use crate::methods::{Draw, Method, Ours, Paper, sampled};
 use crate::report::{Axis, Figure, Panel, Section, Series, Table};
 use crate::statistics::quantile;
@@ -27,8 +27,8 @@ pub(super) fn section(points: usize, poses: usize) -> Result<Section> {
     let poses = poses_near_contact(&exact[0], &exact[1], poses, derive(SEED, 4, 0));
     let methods: [&dyn Method; 3] =
         [&Ours::new("default")?, &Paper::new("printed"), &Paper::amended("amended")];
-    const HEADER: &str = "noise (mm), method, false alarms, misses, Brier score, mean P of the free, \
-                          of collisions, prepare (ms), median (ms), p95 (ms)";
+    const HEADER: &str = "noise (mm), method, false alarms, misses, Brier score, \
+                          prepare (ms), median (ms), p95 (ms)";
     let mut table = Table::new(HEADER.split(", "));
     let mut panels = Vec::new();
     for (number, std) in (0..).zip(STDS) {
@@ -53,12 +53,10 @@ pub(super) fn section(points: usize, poses: usize) -> Result<Section> {
                 let in_mm = |d: f64| (1e3 * d).clamp(-WIDEST, WIDEST);
                 of.map(|(pose, said)| (in_mm(pose.signed_distance), said.score)).collect::<Vec<_>>()
             });
-            let mean =
-                |all: &[(f64, f64)]| all.iter().map(|(_, p)| p).sum::<f64>() / all.len() as f64;
             let mut row = vec![format!("{:.0}", 1e3 * std), method.name()];
-            row.extend(sample.wrong().map(|count| count.to_string()));
-            let errors = [brier(&sample, &sample.ones()), mean(&free), mean(&hit)];
-            row.extend(errors.map(|value| format!("{value:.3}")));
+            let [wrong, _] = wrong_from(&sample, &sample.ones(), 0.5);
+            row.extend(wrong.map(|count| count.to_string()));
+            row.push(format!("{:.3}", brier(&sample, &sample.ones())));
             let times: Vec<f64> = said.iter().map(|said| 1e-3 * said.micros).collect();
             row.push(format!("{:.0}", 1e3 * prepare));
             row.extend([0.5, 0.95].map(|share| format!("{:.2}", quantile(&times, share))));

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use cloudtouch_geom::seed::{derive, unit};
 use cloudtouch_geom::{UncertainPoint, Vector3};
-use cloudtouch_svm::{Class, Kernel, Problem, Rung, Sample, Settings, Solution, Solver};
+use cloudtouch_svm::{Class, Kernel, Problem, Sample, Settings, Solution, Solver};
 use cloudtouch_testkit::facing::patches_over_a_plane;
 
 use super::timing::{least_of, ratio, three_digits, times, within};
@@ -43,8 +43,6 @@ struct Compared {
     seconds: [Vec<f64>; 2],
     /// How many reach the gap.
     at_the_gap: [usize; 2],
-    /// How many of ours SMO did not finish alone.
-    past_smo: usize,
 }
 
 const INTRODUCTION: &str = "Random leaf problems in the unit box: a plane against a cap, a wedge or a sheet that \
@@ -60,14 +58,13 @@ pub(super) fn measure() -> Findings {
     let all = CELLS.iter().flat_map(|cell| SIZES.iter().map(move |size| (cell, size)));
     let all: Vec<Compared> =
         all.map(|(cell, size)| Compared::measure(cell, *size)).collect::<Result<_>>()?;
-    const HEADER: &str = "cell, points, problems, at the gap, past SMO, ours median, ours p95, \
+    const HEADER: &str = "cell, points, problems, at the gap, ours median, ours p95, \
                           Clarabel median, Clarabel p95, ratio";
     let mut table = Table::new(HEADER.split(", "));
     for c in &all {
         let [ours, theirs] = c.at_the_gap;
         let mut row = vec![c.cell.into(), format!("2 × {}", c.per_side)];
         row.extend([c.seconds[0].len().to_string(), format!("{ours} and {theirs}")]);
-        row.push(c.past_smo.to_string());
         row.extend(c.seconds.iter().flat_map(|seconds| times(seconds)));
         row.push(ratio(c.speedup()));
         table.row(row);
@@ -90,7 +87,7 @@ pub(super) fn measure() -> Findings {
 impl Compared {
     fn measure(cell: &Cell, (per_side, count, repeats): (usize, usize, usize)) -> Result<Self> {
         let seconds = Default::default();
-        let mut all = Self { cell: cell.name, per_side, seconds, at_the_gap: [0; 2], past_smo: 0 };
+        let mut all = Self { cell: cell.name, per_side, seconds, at_the_gap: [0; 2] };
         for number in 0..count {
             let from = derive(derive(SEED, 6, per_side as u64), number as u64, 0);
             let samples = cell.problem(per_side, from);
@@ -100,7 +97,6 @@ impl Compared {
                 let (solution, seconds) = least_of(repeats, || solve(cell, &samples, with))?;
                 all.seconds[which].push(seconds);
                 all.at_the_gap[which] += usize::from(solution.relative_gap <= GAP);
-                all.past_smo += usize::from(which == 0 && solution.rung != Rung::Smo);
             }
         }
         Ok(all)

@@ -2,6 +2,7 @@
 //! truth.
 
 mod ask;
+mod camera;
 mod judged;
 mod pages;
 mod plan;
@@ -59,7 +60,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let arguments = format!("--draws {draws} --poses {poses} --update-docs");
     pages::in_full(root, &arguments, &answers).write(&folder)?;
     let for_users = if update_docs { root.join("docs") } else { folder.join("user") };
-    pages::for_users(root, &arguments, &answers).write(&for_users)
+    pages::for_users(root, &arguments, &answers, &camera::answers(draws, poses)?).write(&for_users)
 }
 
 /// Ours, the oracle, the paper's mode and the alternatives. What takes long answers less: the paper's

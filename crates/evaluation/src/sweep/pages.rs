@@ -6,7 +6,7 @@ use cloudtouch_testkit::family::Kind;
 
 use super::judged::Judged;
 use super::tables::is_of;
-use super::{OURS, stated, targets};
+use super::{OURS, camera, stated, targets};
 use crate::SEED;
 use crate::answers::{Answers, Pair};
 use crate::report::{Page, Section};
@@ -19,9 +19,15 @@ by design, other methods, families one by one, intervals and targets are in [the
 [what a probability means](probability.md) says what none of this can show.";
 
 /// docs/accuracy.md: what a user needs to know.
-pub(super) fn for_users(root: &Path, arguments: &str, answers: &Answers) -> Page {
+pub(super) fn for_users(
+    root: &Path,
+    arguments: &str,
+    answers: &Answers,
+    of_camera: &Answers,
+) -> Page {
     let title = ("accuracy", "Accuracy");
     let mut page = Page::new(title, ("sweep", arguments), FOR_USERS, root, SEED);
+    page.section(camera::section(of_camera));
     page.section(
         Section::new("How well it tells collisions from free poses")
             .text(
@@ -38,16 +44,11 @@ pub(super) fn for_users(root: &Path, arguments: &str, answers: &Answers) -> Page
             .text("### A cloud and an exact mesh")
             .text(answers.by_noise(Pair::CloudMesh)),
     );
-    page.section(
-        Section::new("What a stated probability is worth")
-            .text("The share of poses that collide, of those with such a stated probability.")
-            .text(stated::table(answers))
-            .figure(
-                "accuracy-stated",
-                "Stated probability against observed rate of collisions",
-                stated::figure(answers),
-            ),
-    );
+    page.section(Section::new("What a stated probability is worth").figure(
+        "accuracy-stated",
+        "Stated probability against observed rate of collisions",
+        stated::figure(answers),
+    ));
     page
 }
 
