@@ -76,6 +76,10 @@ mod tests {
         assert_eq!(nearest_neighbours(&points, &Point3::origin(), 9).len(), 4);
         assert_eq!(minimum_distance(&points[..1], &points[1..]), 2.0);
         assert_eq!(minimum_distance(&points, &[]), f64::INFINITY);
+        // Missing returns do not count.
+        let points = [Point3::new(f64::NAN, 0.0, 0.0), Point3::new(3.0, 4.0, 0.0)];
+        assert_eq!(minimum_distance(&points, &[Point3::origin()]), 5.0);
+        assert_eq!(minimum_distance(&points[..1], &[Point3::origin()]), f64::INFINITY);
     }
 
     #[test]

@@ -113,15 +113,13 @@ fn of_draw(family: &Scenes, draw: u64, poses: usize) -> Result<Vec<Told>> {
 
 /// The shortest way out of an overlap; `None` beyond the classes, and where the way is not known.
 fn way_out(scene: &FamilyScene, labelled: &LabelledPose) -> Option<Vector3> {
-    /// Beyond what is known, m.
-    const SPARE: f64 = 1e-5;
     let (pose, distance) = (&labelled.scene_from_object, labelled.signed_distance);
     let (_, deepest, _) = CLASSES[1];
     if !(deepest..0.0).contains(&distance) {
         return None;
     }
     // As long as is known, and a little longer: its direction is not.
-    let known = WayOut { direction: Vector3::zeros(), length: -1.05 * distance + SPARE };
+    let known = WayOut { direction: Vector3::zeros(), length: -1.05 * distance + 1e-5 };
     let way = scene.a.shortest_way_out(&scene.b, pose, scene.touch, known);
     way.direction.try_normalize(0.0)
 }
