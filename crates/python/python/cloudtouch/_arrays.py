@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cloudtouch import _given
+
+#: Units that arrays may say they are in: those of the package, and none.
+UNITS = ("", "m", "meter", "metre", "rad", "radian", "dimensionless")
 
 #: As numpy writes a shape, of which the first number is free.
 FREE = -1
@@ -34,21 +38,33 @@ def array_of(value: Any, name: str) -> npt.NDArray[Any]:
     """What a user gave as an array, whatever its shape and type."""
     if value is None or isinstance(value, (str, bytes, os.PathLike)):
         raise TypeError(f"{name} is {_given.told(value)}: give an array of numbers")
+    if isinstance(value, Iterator):
+        raise TypeError(f"{name} is {_given.told(value)}, which gives one after the other: give list({name})")
+    _refuse_unit(value, name)
     try:
         return np.asarray(value)
-    except (TypeError, ValueError) as error:
+    # RuntimeError is that of a tensor of torch that needs a gradient.
+    except (TypeError, ValueError, RuntimeError) as error:
         raise ValueError(f"{name} makes no array ({error}): give rows of equally many numbers") from None
 
 
 def points(value: Any, name: str, *, of_image: bool = True) -> tuple[npt.NDArray[Any], tuple[int, int] | None]:
     """Rows of x, y and z, and width and height where they are those of an image."""
-    array = array_of(value, name) if not isinstance(value, np.ma.MaskedArray) else _refuse_mask(name)
-    fields = _fields(value, array)
+    if isinstance(value, np.ma.MaskedArray):
+        _refuse_mask(name)
+    array = None
+    fields = _columns(value, name)
+    if fields is None:
+        array = array_of(value, name)
+        fields = {field: array[field] for field in array.dtype.names} if array.dtype.names else None
     if fields is not None:
         missing = [field for field in "xyz" if field not in fields]
         if missing:
             raise ValueError(f"{name} has the fields {', '.join(fields)}: {', '.join(missing)} is missing")
-        array = np.stack([fields[field] for field in "xyz"], axis=-1)
+        array = np.stack([_column(fields[field], f"{name}[{field!r}]") for field in "xyz"], axis=-1)
+    assert array is not None, "either it has columns or it is an array"
+    if array.shape == (0,):
+        array = np.empty((0, 3))
     image_size = None
     if array.ndim == 3:
         height, width = array.shape[:2]
@@ -61,14 +77,24 @@ def points(value: Any, name: str, *, of_image: bool = True) -> tuple[npt.NDArray
     return _readable(array, name), image_size
 
 
-def _fields(value: Any, array: npt.NDArray[Any]) -> dict[str, npt.NDArray[Any]] | None:
-    """The columns of a structured array or of a pandas table, by name; ``None`` where they have none."""
-    if array.dtype.names is not None:
-        return {field: array[field] for field in array.dtype.names}
-    names = list(value.columns) if hasattr(value, "columns") and array.ndim == 2 else []
-    if any(isinstance(column, str) for column in names):
-        return {str(column): array[:, place] for place, column in enumerate(names)}
-    return None
+def _columns(value: Any, name: str) -> dict[str, Any] | None:
+    """The columns of a pandas table by name, those of the points with what is in them; ``None`` of anything else."""
+    names = list(value.columns) if hasattr(value, "columns") and hasattr(value, "__getitem__") else []
+    if not any(isinstance(column, str) for column in names):
+        return None
+    for field in "xyz":
+        if names.count(field) > 1:
+            raise ValueError(f"{name} has the column {field} twice: leave out the one that is not meant")
+    # One by one: beside a column of words all of a table are objects.
+    return {str(column): value[column] if column in ("x", "y", "z") else None for column in names}
+
+
+def _column(value: Any, name: str) -> npt.NDArray[Any]:
+    """Numbers of one field; what a table of pandas has none of, where it says so, is a missing return."""
+    array = array_of(value, name)
+    if array.dtype.kind == "O" and getattr(value.dtype, "kind", "O") in "fiu":
+        array = value.to_numpy(dtype=np.float64, na_value=np.nan)
+    return _readable(array, name)
 
 
 def numbers(value: Any, name: str, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
@@ -76,6 +102,9 @@ def numbers(value: Any, name: str, shape: tuple[int, ...]) -> npt.NDArray[np.flo
     if isinstance(value, np.ma.MaskedArray):
         _refuse_mask(name)
     array = array_of(value, name)
+    if array.shape == (0,) and shape[0] == FREE:
+        # An empty list: none of them.
+        array = np.empty((0, *shape[1:]))
     fits = array.ndim == len(shape) and all(n in (FREE, m) for n, m in zip(shape, array.shape))
     if not fits:
         wanted = str(shape).replace(str(FREE), "N")
@@ -135,3 +164,11 @@ def _whole(value: Any, name: str) -> npt.NDArray[Any]:
 
 def _refuse_mask(name: str) -> npt.NDArray[Any]:
     raise ValueError(f"{name} is a masked array: give {name}.filled(numpy.nan), NaN for no return")
+
+
+def _refuse_unit(value: Any, name: str) -> None:
+    """What knows its unit loses it as a plain array, and its millimetres would be metres."""
+    if isinstance(value, np.ndarray) or hasattr(value, "magnitude"):
+        unit = getattr(value, "units", getattr(value, "unit", None))
+        if unit is not None and str(unit) not in UNITS:
+            raise ValueError(f"{name} is in {unit}: give plain numbers, in metres and radians")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sized
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -504,7 +504,7 @@ def _scan(
     """Rows of points, and everything else that a cloud is made of, by its name."""
     _refuse_file(points, "points", "Cloud.read({}, sensor=...)")
     if not isinstance(points, np.ndarray) and hasattr(points, "points"):
-        points = points.points
+        points = _of_cloud(points)
     elif hasattr(points, "vertices"):
         # Of a mesh they would be few of its points, and nothing between them.
         kind = type(points).__name__
@@ -536,6 +536,18 @@ def _scan(
         "robot": [replace(link, pose=optional(link.pose, "robot", 4, 4)) for link in _links(robot)],
         "refined": _given.flag(refined, "refined"),
     }
+
+
+def _of_cloud(source: Any) -> Any:
+    """Its points, where they are not those of a mesh: they would be few, and nothing between them."""
+    for name in ("faces", "triangles", "cells"):
+        faces: Any = getattr(source, name, None)
+        if isinstance(faces, Sized) and len(faces):
+            raise TypeError(
+                f"points is of the type {type(source).__name__}, which has .{name}: give its .points for a cloud, or Mesh(its "
+                "vertices, its triangles) for a mesh"
+            )
+    return source.points
 
 
 def _links(robot: Any) -> list[SeenLink]:

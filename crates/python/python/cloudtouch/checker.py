@@ -206,6 +206,9 @@ def _of_table(kind: Any, answers: Mapping[str, npt.NDArray[Any]], count: int) ->
 
 
 def _sixteen(pose: Any) -> npt.NDArray[np.float64] | None:
+    # What is under a mask is no number, and True is not 1.
+    if isinstance(pose, np.ma.MaskedArray) or getattr(pose, "dtype", None) == np.bool_:
+        return None
     try:
         numbers = np.asarray(_plain(pose), dtype=np.float64)
     except (TypeError, ValueError):
