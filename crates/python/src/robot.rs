@@ -160,6 +160,12 @@ impl RobotChecker {
         Ok(Self { checker: Mutex::new(checker), surroundings: surroundings.unbind() })
     }
 
+    /// Another in the same surroundings; what one of the two allows or holds is not seen by the other.
+    fn copied(&self, py: Python<'_>) -> Self {
+        let checker = Mutex::new(self.lock().clone());
+        Self { checker, surroundings: self.surroundings.clone_ref(py) }
+    }
+
     #[pyo3(signature = (a, b, /))]
     fn allow(&self, a: &str, b: &str) -> PyResult<()> {
         self.lock().allow(a, b).map_err(refused)

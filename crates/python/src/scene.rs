@@ -127,6 +127,14 @@ impl Scene {
         if may_touch { bodies.allow(a, b) } else { bodies.forbid(a, b) }.map_err(refused)
     }
 
+    /// Another with the same bodies, which are shared; what is done to one of the two is not seen by the other.
+    fn copied(&self, py: Python<'_>) -> Self {
+        let named = self.lock();
+        let bodies = named.bodies.iter().map(|(name, body)| (name.clone(), body.clone_ref(py)));
+        let named = Named { places: named.places.clone(), bodies: bodies.collect() };
+        Self { named: Mutex::new(named), nobody: Arc::clone(&self.nobody) }
+    }
+
     fn names(&self) -> Vec<String> {
         self.lock().places.names().map(str::to_owned).collect()
     }

@@ -6,9 +6,11 @@ import os
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+
+Kind = TypeVar("Kind")
 
 
 def number(value: Any, name: str) -> float:
@@ -94,3 +96,11 @@ def told(value: Any) -> str:
         return f"a whole number of {value.bit_length()} bits"
     is_short = value is None or isinstance(value, (str, bytes, bool, int, float))
     return f"{value!r}" if is_short else f"of the type {type(value).__name__}"
+
+
+def same_kind(value: Kind) -> Kind:
+    """An object of the class of another, with what a class derived from the package's has put there."""
+    other = object.__new__(type(value))
+    if hasattr(other, "__dict__"):
+        other.__dict__.update(vars(value))
+    return other

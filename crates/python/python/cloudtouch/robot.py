@@ -204,6 +204,8 @@ class PathChecked:
 class RobotChecker:
     """A robot in its surroundings, asked about positions of its joints, on all cores.
 
+    ``copy.copy`` makes another in the same surroundings, which allows and holds what it will by itself. It does not pickle.
+
     Parameters
     ----------
     robot
@@ -377,6 +379,14 @@ class RobotChecker:
         given, until, (stopped, later), looked_at, verdict = self._checker.check_path(asked, positions, tolerance)
         checked = tuple(Checked._of(*at) for at in given)
         return PathChecked(checked, until, _place(stopped), _place(later), looked_at, verdict)
+
+    def __copy__(self) -> RobotChecker:
+        other = _given.same_kind(self)
+        other._robot, other._checker = self._robot, self._checker.copied()
+        return other
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a robot checker does not pickle: make it where it is needed (copy.copy makes one beside it)")
 
 
 def _place(found: _native.Place | None) -> Stopped | None:

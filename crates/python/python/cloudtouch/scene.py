@@ -111,6 +111,9 @@ class Scene:
 
     Moving a body costs nothing, and a cloud that is changed is seen as it then is. Poses are (4, 4), from the frame of the
     body into that of the scene, or of what it is attached to, m. Names that are not there, or there already, are a :class:`CloudtouchError`.
+
+    ``copy.copy`` makes a scene to try things in: it has the same bodies, and what is moved, added or allowed in one of the
+    two is not in the other. Scenes do not pickle.
     """
 
     __slots__ = ("_scene",)
@@ -167,7 +170,10 @@ class Scene:
         return Checked._of(*self._scene.check(native_query(query)))
 
     def check_first(self, query: Query) -> PairAnswer | None:
-        """One pair that does not read as free, or ``None`` where all do: sooner known."""
+        """One pair that does not read as free, or ``None`` where all do: sooner known.
+
+        ``None`` also where no pair was asked about, which :meth:`check` and :meth:`is_free` do not call free.
+        """
         found = self._scene.check_first(native_query(query))
         return None if found is None else PairAnswer._of(found)
 
@@ -179,6 +185,14 @@ class Scene:
         """All bodies and what :meth:`check` finds, to look at: a notebook shows it, :meth:`Page.save` writes it."""
         asked, words = native_query(query), _given.text(title, "title")
         return Page(lambda height: self._scene.page(asked, words, height))
+
+    def __copy__(self) -> Scene:
+        other = _given.same_kind(self)
+        other._scene = self._scene.copied()
+        return other
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a scene does not pickle: add its bodies where it is needed (copy.copy makes one that shares them)")
 
     def __len__(self) -> int:
         """How many bodies there are."""
