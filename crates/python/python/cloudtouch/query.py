@@ -262,7 +262,7 @@ class Query:
     def are_free(self, a: Body, b: Body, poses: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Which of many poses read as free, on all cores: ``run_batch(a, b, poses).verdict == "free"``, and sooner.
 
-        A pose is done with as soon as it is known not to be free, and no contacts are looked for.
+        A pose is done with as soon as it is known not to be free, and no contacts are looked for. Ctrl-C ends it.
 
         Parameters
         ----------
