@@ -30,6 +30,8 @@ def test_a_cloud_without_faces_is_taken(none):
 def test_what_gives_points_one_by_one_is_told_how():
     with pytest.raises(TypeError, match=r"points is of the type generator.*list\(points\)"):
         ct.Cloud((point for point in sheet()), sensor="iso:0.001")
+    # What goes through an array knows that array.
+    ct.Cloud.from_depth(np.full((4, 4), 0.8), np.array([[4, 4], [1.5, 1.5]]).flat, sensor="iso:0.001")
 
 
 def test_a_tensor_that_gives_no_array_is_told_by_the_name_of_the_argument():

@@ -38,7 +38,7 @@ def array_of(value: Any, name: str) -> npt.NDArray[Any]:
     """What a user gave as an array, whatever its shape and type."""
     if value is None or isinstance(value, (str, bytes, os.PathLike)):
         raise TypeError(f"{name} is {_given.told(value)}: give an array of numbers")
-    if isinstance(value, Iterator):
+    if isinstance(value, Iterator) and not hasattr(value, "__array__"):
         raise TypeError(f"{name} is {_given.told(value)}, which gives one after the other: give list({name})")
     _refuse_unit(value, name)
     try:
