@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from pathlib import Path
 from typing import Callable
 
 import numpy as np
@@ -74,13 +75,18 @@ def main() -> None:
     given = options.parse_args()
     if given.grasps < 1:
         options.error(f"--grasps {given.grasps}: try at least one")
+    if given.svg and not Path(given.svg).parent.is_dir():
+        options.error(f"--svg {given.svg}: there is no such folder: make it first")
     random = np.random.default_rng(given.seed)
 
     solids = None if given.scan else scene(random)
-    if solids is None:
-        scan = ct.Cloud.read(given.scan, sensor=given.sensor, refined=True)
-    else:
-        scan = ct.Cloud(seen(solids, random), sensor=given.sensor, refined=True)
+    try:
+        if solids is None:
+            scan = ct.Cloud.read(given.scan, sensor=given.sensor, refined=True)
+        else:
+            scan = ct.Cloud(seen(solids, random), sensor=given.sensor, refined=True)
+    except ct.CloudtouchError as error:
+        options.error(str(error))
     hand = ct.Mesh(*mesh(gripper()))
     # Of an image alone it is known what it did not see.
     if ct.Query().run(scan, hand, np.eye(4)).unseen is None:
@@ -89,6 +95,8 @@ def main() -> None:
             "publishes it"
         )
     range_of = np.linalg.norm(scan.points, axis=1)
+    if not (range_of < REACH).any():
+        options.error(f"{given.scan} has no point nearer to its camera than {REACH} m, which grasps are about: is it in metres?")
     poses = grasps(scan.points[range_of < REACH], given.grasps, random)
     # All that a gripper there can meet.
     near = scan.points[range_of < REACH + 0.25]

@@ -28,6 +28,9 @@ def test_grasps_that_are_kept_are_free(tmp_path):
     ("arguments", "says"),
     [
         (["--scan", str(FIXTURES / "piano-room/room.pcd"), "--sensor", "iso:0.002"], "room.pcd is no depth image: give one"),
+        (["--scan", "gone.pcd"], "gone.pcd: cannot be read"),
+        (["--scan", str(FIXTURES / "piano-room/room.pcd"), "--sensor", "knect"], "unknown sensor `knect`"),
+        (["--grasps", "9", "--svg", "no/such/folder/grasps.svg"], "--svg no/such/folder/grasps.svg: there is no such folder"),
         (["--grasps", "0"], "--grasps 0: try at least one"),
         (["--grasps", "-5"], "--grasps -5: try at least one"),
     ],
@@ -39,3 +42,13 @@ def test_what_no_grasp_can_be_told_of_was_an_empty_picture_or_a_traceback(tmp_pa
     )
     assert run.returncode == 2 and says in run.stderr and "Traceback" not in run.stderr, run.stderr
     assert "Warning" not in run.stderr and not picture.exists()
+
+
+def test_a_scan_that_no_grasp_reaches_is_told_so(tmp_path):
+    """Three metres off, or in millimetres, there was a traceback of what chooses the points."""
+    rows = [f"{(u - 19.5) / 40 * 3:.4f} {(v - 14.5) / 40 * 3:.4f} 3" for v in range(30) for u in range(40)]
+    head = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 40\nHEIGHT 30\nPOINTS 1200\nDATA ascii\n"
+    (tmp_path / "far.pcd").write_text(head + "\n".join(rows) + "\n")
+    arguments = ["--scan", str(tmp_path / "far.pcd"), "--sensor", "iso:0.01", "--grasps", "9"]
+    run = subprocess.run([sys.executable, "grasp_filter.py", *arguments], cwd=EXAMPLES, capture_output=True, text=True)
+    assert run.returncode == 2 and "no point nearer to its camera than 1.1 m" in run.stderr, run.stderr
