@@ -27,6 +27,8 @@ fn files_that_cannot_be_read() {
     for (file, parts) in [
         ("gone.pcd", &["gone.pcd: cannot be read: No such file"][..]),
         ("gone", &["gone: cannot be read: No such file"]),
+        ("-", &["-: cannot be read: ", "standard input is not read"]),
+        ("~/gone.pcd", &["~/gone.pcd: cannot be read: ", "write the whole path"]),
         ("empty.pcd", &["empty.pcd", "empty"]),
         ("folder.pcd", &["folder.pcd: is a folder"]),
         (".", &[".: is a folder"]),

@@ -9,7 +9,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{conversion::remedy, fault::FormatError, recording_fault::RecordingFault};
+use crate::{
+    conversion::remedy, fault::FormatError, missing::explained, recording_fault::RecordingFault,
+};
 
 /// Why a file could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -79,6 +81,13 @@ impl ReadError {
     /// Of a recording.
     pub(crate) fn recording(path: &Path, fault: RecordingFault) -> Self {
         Self::Recording { path: path.to_owned(), problem: Box::new(fault) }
+    }
+
+    /// Why a file could not be opened: what the operating system said, and more where the name tells it, as that of
+    /// standard input does (`-`).
+    #[must_use]
+    pub fn of_opening(path: &Path, cause: io::Error) -> Self {
+        Self::Io { path: path.to_owned(), cause: explained(path, cause) }
     }
 }
 

@@ -11,6 +11,7 @@ mod error;
 mod fault;
 mod geometry;
 mod limits;
+mod missing;
 pub mod obj;
 pub mod pcd;
 pub mod ply;

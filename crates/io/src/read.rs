@@ -266,7 +266,7 @@ pub fn read_bytes(path: impl AsRef<Path>, limit: u64) -> Result<Vec<u8>, ReadErr
     let path = path.as_ref();
     let failed = |cause| ReadError::Io { path: path.to_owned(), cause };
     let too_large = || ReadError::TooLarge { path: path.to_owned(), limit };
-    let file = File::open(path).map_err(failed)?;
+    let file = File::open(path).map_err(|cause| ReadError::of_opening(path, cause))?;
     let about = file.metadata().map_err(failed)?;
     if about.is_dir() {
         return Err(failed(is_folder()));

@@ -122,3 +122,22 @@ fn a_folder_is_told_as_such() {
     let error = cloudtouch_io::read_cloud(folder.path()).unwrap_err().to_string();
     assert!(error.contains("it is a folder: give a file in it"), "{error}");
 }
+
+/// Names that mean something to other programs were said to be of no file, and no more.
+#[test]
+fn a_name_that_is_of_no_file_is_told_why() {
+    for (name, why) in [
+        ("-", "standard input is not read: give the name of a file"),
+        ("~/scan.pcd", "only a shell takes `~` for a home folder, outside of quotes"),
+        ("{\"shoulder\": 0}", "write it to one, and give its name"),
+        ("file:///home/me/scan.pcd", "addresses are not read: give the path of a file"),
+    ] {
+        let error = cloudtouch_io::read_bytes(name, 100).unwrap_err();
+        assert!(matches!(error, ReadError::Io { .. }), "{error}");
+        let error = error.to_string();
+        assert!(error.starts_with(&format!("{name}: cannot be read: ")), "{error}");
+        assert!(error.contains(why), "{error}");
+    }
+    let error = cloudtouch_io::read_bytes("scan~.pcd", 100).unwrap_err().to_string();
+    assert!(!error.contains("home"), "{error}");
+}

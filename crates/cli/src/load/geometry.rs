@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use anyhow::{Context as _, Result, ensure};
+use anyhow::{Result, ensure};
 use cloudtouch_cli::intrinsics::DepthImages;
 use cloudtouch_io::{
-    DepthCamera, Geometry, LengthUnit, ReadLimits, check_extension, is_depth_image,
+    DepthCamera, Geometry, LengthUnit, ReadError, ReadLimits, check_extension, is_depth_image,
     read_depth_image_within, read_geometry_within, read_scan_within,
     recording::{ScanName, file_of},
     scaled_cloud,
@@ -62,8 +62,8 @@ impl Kind {
 /// Whether a file is there and has an extension that is read: asked of all files before any is read.
 pub(crate) fn check(path: &Path) -> Result<()> {
     // Said before the extension is looked at: `cloudtouch query folder …` is not about extensions.
-    let found = std::fs::metadata(file_of(path))
-        .with_context(|| format!("{}: cannot be read", path.display()))?;
+    let found =
+        std::fs::metadata(file_of(path)).map_err(|cause| ReadError::of_opening(path, cause))?;
     ensure!(!found.is_dir(), "{}: is a folder: give a cloud or mesh file", path.display());
     ensure!(
         found.is_file() || path.extension().is_some(),
