@@ -96,7 +96,9 @@ def main() -> None:
         )
     range_of = np.linalg.norm(scan.points, axis=1)
     if not (range_of < REACH).any():
-        options.error(f"{given.scan} has no point nearer to its camera than {REACH} m, which grasps are about: is it in metres?")
+        options.error(
+            f"{given.scan} has no point nearer to its camera than {REACH} m, which grasps are about: is it in metres?"
+        )
     poses = grasps(scan.points[range_of < REACH], given.grasps, random)
     # All that a gripper there can meet.
     near = scan.points[range_of < REACH + 0.25]
