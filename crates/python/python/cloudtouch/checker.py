@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections import OrderedDict
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Generic, Hashable, TypeVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cloudtouch import _given, _native
+from cloudtouch._kept import Kept
 from cloudtouch._native import CloudtouchError
 from cloudtouch.bodies import Cloud, Mesh, check_sensor
 from cloudtouch.query import Body, Query
@@ -23,8 +23,6 @@ from cloudtouch.report import Batch
 MESHES = (".stl", ".obj")
 #: Columns that a row has to have.
 NEEDED = ("scene", "object", "pose")
-
-Prepared = TypeVar("Prepared")
 
 
 class PoseChecker:
@@ -80,8 +78,8 @@ class PoseChecker:
         if query is not None and not isinstance(query, Mapping):
             raise TypeError(f'query is {_given.told(query)}: give its settings by name, such as {{"reject": 0.05}}')
         self._query = Query(**(query or {}))
-        self._scenes: _Kept[Body] = _Kept(_given.count(keep, "keep"))
-        self._objects: _Kept[Body] = _Kept(self._scenes.limit)
+        self._scenes: Kept[Body] = Kept(_given.count(keep, "keep"))
+        self._objects: Kept[Body] = Kept(self._scenes.limit)
 
     def __call__(self, rows: Any) -> Any:
         """The columns of ``rows``, and those of :class:`Batch` beside them.
@@ -104,11 +102,12 @@ class PoseChecker:
         """
         count = _count(rows)
         # By place from here on: a column of pandas goes by its labels, which need not be in order, nor be there.
-        columns = {name: _array(column) for name, column in rows.items()}
-        poses = [_sixteen(pose) for pose in columns["pose"]]
+        columns = {name: column if _is_masked(column) else _array(column) for name, column in rows.items()}
+        asked = {name: _array(column) for name, column in rows.items() if name in NEEDED}
+        poses = [_sixteen(pose) for pose in asked["pose"]]
         answers = _refused("", count).columns()
         answers = {name: column.astype(_wide(column.dtype)) for name, column in answers.items()}
-        for names, places in _groups(columns, poses):
+        for names, places in _groups(asked, poses):
             batch = self._answer(names, [poses[place] for place in places])
             for name, column in batch.columns().items():
                 answers[name][places] = column
@@ -117,8 +116,8 @@ class PoseChecker:
         return {**columns, **answers}
 
     def _answer(self, names: tuple[str, str], poses: list[Any]) -> Batch:
-        if poses[0] is None:
-            return _refused("pose is not 16 numbers: give those of a 4 x 4 matrix, row by row", len(poses))
+        if isinstance(poses[0], str):
+            return _refused(poses[0], len(poses))
         for column, name in zip(NEEDED, names):
             if not name:
                 return _refused(f"{column} is missing: give a path that starts from root", len(poses))
@@ -144,35 +143,18 @@ class PoseChecker:
         sensor = self._sensors[0 if is_scene else 1]
         return Cloud.read(path, sensor=sensor, unit=cloud_unit, refined=is_scene)
 
-    def __getstate__(self) -> dict[str, Any]:
-        # A worker prepares what it is asked about.
-        kept = self._scenes.limit
-        return {**self.__dict__, "_scenes": _Kept(kept), "_objects": _Kept(kept)}
-
-
-class _Kept(Generic[Prepared]):
-    """What was used last, by its name."""
-
-    def __init__(self, limit: int) -> None:
-        if limit < 1:
-            raise ValueError(f"keep is {limit}: at least one body stays prepared")
-        self.limit = limit
-        self._known: OrderedDict[Hashable, Prepared] = OrderedDict()
-
-    def get(self, name: Hashable, make: Any) -> Prepared:
-        if name not in self._known:
-            made: Prepared = make()
-            self._known[name] = made
-            while len(self._known) > self.limit:
-                self._known.popitem(last=False)
-        self._known.move_to_end(name)
-        return self._known[name]
-
 
 def _count(rows: Any) -> int:
+    if not isinstance(rows, Mapping) and not hasattr(rows, "assign"):
+        told = f"{type(rows).__module__}.{type(rows).__name__}"
+        instead = 'in Ray batch_format="numpy", of Arrow to_pydict(), of Polars to_dict()'
+        raise TypeError(f"rows is a {told}: give columns by their names or a table of pandas ({instead})")
+    twice = [name for name in NEEDED if list(rows).count(name) > 1]
+    if twice:
+        raise ValueError(f"columns {', '.join(map(str, rows))}: {', '.join(twice)} is there twice: leave one of them")
     missing = [name for name in NEEDED if name not in rows]
     if missing:
-        raise ValueError(f"columns {', '.join(rows)}: {', '.join(missing)} is missing")
+        raise ValueError(f"columns {', '.join(map(str, rows))}: {', '.join(missing)} is missing")
     lengths = {name: len(column) for name, column in rows.items()}
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name} {length}" for name, length in lengths.items())
@@ -184,9 +166,10 @@ def _groups(
     rows: Mapping[str, npt.NDArray[Any]], poses: list[Any]
 ) -> Iterator[tuple[tuple[str, str], npt.NDArray[np.int64]]]:
     """Scene and object, and the rows that ask about them, in the order they first come; those without a pose apart."""
-    places: dict[tuple[str, str, bool], list[int]] = {}
+    places: dict[tuple[str, str, str], list[int]] = {}
     for place, pose in enumerate(poses):
-        key = (_path(rows["scene"][place]), _path(rows["object"][place]), pose is None)
+        refused = pose if isinstance(pose, str) else ""
+        key = (_path(rows["scene"][place]), _path(rows["object"][place]), refused)
         places.setdefault(key, []).append(place)
     for (scene, body, _), group in places.items():
         yield (scene, body), np.asarray(group)
@@ -205,15 +188,20 @@ def _of_table(kind: Any, answers: Mapping[str, npt.NDArray[Any]], count: int) ->
     return dict(kind(one).iloc[:0].items())
 
 
-def _sixteen(pose: Any) -> npt.NDArray[np.float64] | None:
-    # What is under a mask is no number, and True is not 1.
-    if isinstance(pose, np.ma.MaskedArray) or getattr(pose, "dtype", None) == np.bool_:
-        return None
+def _sixteen(pose: Any) -> npt.NDArray[np.float64] | str:
+    """The matrix, or why there is none."""
+    if isinstance(pose, str) and pose.startswith("["):
+        return "pose is not 16 numbers but text: Dask makes it of lists in memory unless dataframe.convert-string is False"
     try:
-        numbers = np.asarray(_plain(pose), dtype=np.float64)
+        given = np.asarray(_plain(pose))
+        # Imaginary parts would be lost, and True is not 1.
+        numbers = np.asarray(given, dtype=np.float64) if given.dtype.kind not in "bc" else np.empty(0)
     except (TypeError, ValueError):
-        return None
-    return numbers.reshape(4, 4) if numbers.size == 16 else None
+        numbers = np.empty(0)
+    # What is under a mask is not known.
+    if numbers.size != 16 or np.ma.getmaskarray(pose).any():
+        return "pose is not 16 numbers: give those of a 4 x 4 matrix, row by row"
+    return numbers.reshape(4, 4)
 
 
 def _plain(pose: Any) -> Any:
@@ -223,15 +211,22 @@ def _plain(pose: Any) -> Any:
     return pose
 
 
+def _is_masked(value: Any) -> bool:
+    return isinstance(value, np.ma.MaskedArray)
+
+
 def _array(column: Any) -> npt.NDArray[Any]:
     try:
-        return np.asarray(column)
+        # As one array, rows would lose their masks.
+        if not _is_masked(column) and not any(map(_is_masked, column)):
+            return np.asarray(column)
     except ValueError:
-        # Rows of different shapes, such as a pose that is none among others: each stays as it is.
-        rows = np.empty(len(column), dtype=object)
-        for place, row in enumerate(column):
-            rows[place] = row
-        return rows
+        pass
+    # Rows of different shapes too, such as a pose that is none among others: each stays as it is.
+    rows = np.empty(len(column), dtype=object)
+    for place, row in enumerate(column):
+        rows[place] = row
+    return rows
 
 
 def _wide(dtype: np.dtype[Any]) -> np.dtype[Any] | type:
