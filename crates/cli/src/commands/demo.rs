@@ -132,7 +132,9 @@ fn body<C: PreparedCloud>(name: &str, pcd: &[u8]) -> Result<Loaded<C>> {
     let body = Body::Cloud(C::prepare(&[cloud], sensor, None, |_, _| {})?);
     let kind = Kind::Cloud(LengthUnit::Metres);
     let (file, unit) = (name.to_owned(), kind.unit());
-    let input = Input { file, unit, sensor: Some(sensor.to_string()), sensor_because: None };
+    let short = file.clone();
+    let sensor = Some(sensor.to_string());
+    let input = Input { file, short, unit, sensor, sensor_because: None };
     Ok(Loaded { body, input, kinds: vec![kind] })
 }
 

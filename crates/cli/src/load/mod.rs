@@ -5,6 +5,7 @@ mod geometry;
 pub(crate) mod path;
 pub(crate) mod pose;
 pub(crate) mod sensor_for;
+mod short;
 mod suited;
 pub(crate) mod text;
 
@@ -73,6 +74,9 @@ impl<C: PreparedCloud> Loaded<C> {
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Input {
     pub file: String,
+    /// The same without folders, as a page names it.
+    #[serde(skip)]
+    pub short: String,
     /// In which its coordinates were taken.
     pub unit: String,
     /// By its spec; a mesh has none.
@@ -213,7 +217,9 @@ fn of_mesh<C>(
         );
     }
     let kind = Kind::Mesh(unit);
-    let input = Input { file: named(path), unit: kind.unit(), sensor: None, sensor_because: None };
+    let (file, unit) = (named(path), kind.unit());
+    let short = short::of(std::slice::from_ref(&file));
+    let input = Input { file, short, unit, sensor: None, sensor_because: None };
     Ok(Loaded { body: Body::Mesh(mesh), input, kinds: vec![kind] })
 }
 
@@ -288,6 +294,7 @@ fn of_clouds<C: PreparedCloud>(
     units.dedup();
     let input = Input {
         file: name.to_owned(),
+        short: short::of(names),
         unit: units.join(", "),
         sensor: Some(grid.unwrap_or(sensor).to_string()),
         sensor_because: because.filter(|_| grid.is_none()),

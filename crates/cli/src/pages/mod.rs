@@ -40,9 +40,7 @@ pub(crate) fn body<C: PreparedCloud>(
             Shape::Cloud { points: cloud.points(), brightness }
         }
     };
-    let name = Path::new(&loaded.input.file).file_name();
-    let name = name.map_or(loaded.input.file.clone(), |name| name.to_string_lossy().into_owned());
-    Ok(Drawn { name, about: print::about(loaded), shape })
+    Ok(Drawn { name: loaded.input.short.clone(), about: print::about(loaded), shape })
 }
 
 /// How bright a colour looks (ITU-R BT.601).
