@@ -1,5 +1,6 @@
 //! What the viewer in the page is given: JSON, with long lists as base64 of little endian bytes.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use cloudtouch::Contact;
@@ -13,7 +14,7 @@ use crate::page::Page;
 use crate::share::{Share, choose};
 use crate::upright::{Upright, upright};
 use crate::view::{Asked, Standing, View};
-use crate::{MOST_LIKELY, MOST_TRIANGLES, encode};
+use crate::{MOST_LIKELY, MOST_TRIANGLES, encode, escape};
 
 /// All that is drawn.
 #[derive(Serialize)]
@@ -27,7 +28,7 @@ pub(crate) struct Data<'a> {
 /// A body; positions are about its middle.
 #[derive(Serialize)]
 struct Drawn<'a> {
-    name: &'a str,
+    name: Cow<'a, str>,
     middle: [f64; 3],
     /// 3 × f32 each, m.
     positions: String,
@@ -40,7 +41,7 @@ struct Drawn<'a> {
 /// A view.
 #[derive(Serialize)]
 struct Posed<'a> {
-    name: &'a str,
+    name: Cow<'a, str>,
     /// The place about which all that is drawn is placed, m.
     middle: [f64; 3],
     upright: Upright,
@@ -93,7 +94,7 @@ pub(crate) fn of_page<'a>(page: &'a Page<'_>) -> (Data<'a>, Vec<String>) {
         let (middle, upright) = *known.entry(body).or_insert_with(|| stand(still, page));
         let around = view.around.iter().map(Placed::from).collect();
         let asked = view.asked.as_ref().map(|asked| answered(asked, likely, &chosen));
-        Posed { name: &view.name, middle, upright, around, asked }
+        Posed { name: escape::plain(&view.name), middle, upright, around, asked }
     });
     let views = views.collect();
     (Data { start: page.start, is_one_scene: page.is_one_scene, bodies, views }, notes)
@@ -153,7 +154,8 @@ fn draw<'a>(
             (encode::positions(&corners, &middle), Some(faces), None)
         }
     };
-    Drawn { name: &body.name, middle: middle.coords.into(), positions, triangles, brightness }
+    let name = escape::plain(&body.name);
+    Drawn { name, middle: middle.coords.into(), positions, triangles, brightness }
 }
 
 fn answered(asked: &Asked<'_>, listed: &[Vec<(usize, f64)>; 2], chosen: &[Vec<usize>]) -> Answered {
