@@ -2,11 +2,20 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use cloudtouch::geom::{Point3, bounding_box};
+use cloudtouch::geom::Point3;
 
-/// The middle of the box of some points, m: about it single precision holds map coordinates too.
-pub(crate) fn middle<'a>(points: impl IntoIterator<Item = &'a Point3>) -> Point3 {
-    bounding_box(points).map_or(Point3::origin(), |(low, high)| low + 0.5 * (high - low))
+/// In the middle of most points, m: about it single precision holds map coordinates too, also where a stray
+/// point at the origin puts the middle of the box halfway there. The median along each axis.
+pub(crate) fn middle(points: &[Point3]) -> Point3 {
+    let median = |axis: usize| {
+        let mut along: Vec<f64> = points.iter().map(|point| point[axis]).collect();
+        let half = along.len() / 2;
+        match along.is_empty() {
+            true => 0.0,
+            false => *along.select_nth_unstable_by(half, f64::total_cmp).1,
+        }
+    };
+    Point3::from([0, 1, 2].map(median))
 }
 
 /// Points about a middle, three numbers of single precision each.
