@@ -6,6 +6,9 @@ import { scale } from './colors.js';
 
 // Dots are drawn somewhat larger than their usual distance, so that near surfaces close.
 const DOT = 0.6;
+// How wide a dot is at least, and that of a single point, which has no distance to others, pixels.
+const LEAST = 1.4;
+const LEAST_ALONE = 5;
 
 const BEHIND_EDGES = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
 // An edge between faces that turn by more is drawn as a line, degrees.
@@ -18,7 +21,7 @@ export class Body {
     this.positions = floats(positions);
     const attribute = new BufferAttribute(this.positions, 3);
     this.box = new Box3().setFromBufferAttribute(attribute);
-    this.radius = Math.max(this.box.getBoundingSphere(new Sphere()).radius, 1e-6);
+    this.radius = this.box.getBoundingSphere(new Sphere()).radius;
     this.group = new Group();
     this.group.matrixAutoUpdate = false;
     this.spacing = spacing(this.box, this.positions.length / 3);
@@ -27,7 +30,7 @@ export class Body {
     } else {
       const light = brightness ? Float32Array.from(bytes(brightness), (b) => b / 255) : this.heights();
       const shades = tints(color, light);
-      this.group.add(points(this.positions, shades, { diameter: DOT * this.spacing, least: 1.4, most: 7 }));
+      this.group.add(points(this.positions, shades, { diameter: DOT * this.spacing, least: this.radius > 0 ? LEAST : LEAST_ALONE, most: 7 }));
     }
   }
 

@@ -28,9 +28,12 @@ function start() {
     buttons.tellTurn();
   };
   const poses = new Poses(document.getElementById('poses'), data, show);
-  // `report.html#3` opens at the third pose.
-  const asked = Number(window.location.hash.slice(1)) - 1;
-  poses.go(data.views[asked] ? asked : data.start);
+  // `report.html#3` opens at the third pose, and goes there in a page that is open.
+  const named = () => Number(window.location.hash.slice(1)) - 1;
+  poses.go(data.views[named()] ? named() : data.start);
+  window.addEventListener('hashchange', () => {
+    if (data.views[named()]) poses.go(named());
+  });
   picture?.resize();
   picture?.frame('object', true);
 }
@@ -67,4 +70,9 @@ function drawButtons(picture) {
   return { contact, tellTurn };
 }
 
-if (data.views.length > 0) start();
+if (data.views.length > 0) {
+  start();
+} else {
+  document.getElementById('legend').remove();
+  container.append('No pose has an answer: there is nothing to draw.');
+}

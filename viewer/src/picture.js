@@ -4,6 +4,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { Body } from './body.js';
 import { AROUND, BACKGROUND, OBJECT, SCENE } from './colors.js';
 import { drawContacts } from './contacts.js';
+import { known, sizeOf } from './extent.js';
 import { overlay } from './scalebar.js';
 import { Shade } from './shade.js';
 
@@ -15,12 +16,6 @@ const LOOKS = {
 
 // What is framed fills a little less than the picture.
 const MARGIN = 1.2;
-
-// The box around the bodies of known shape.
-function known(around) {
-  const boxes = around.filter(({ isCloud }) => !isCloud).map(({ box }) => box);
-  return boxes.reduce((all, box) => all.union(box), new Box3());
-}
 
 export class Picture {
   constructor(container, { bodies, is_one_scene: isOneScene }) {
@@ -68,6 +63,7 @@ export class Picture {
   }
 
   show(view) {
+    const isOtherScene = this.view && this.sceneOf(this.view) !== this.sceneOf(view);
     this.view = view;
     this.middle = new Vector3(...view.middle);
     this.group?.removeFromParent();
@@ -81,10 +77,10 @@ export class Picture {
       contact: pair.contact,
     };
     const upright = this.turned.get(this.sceneOf(view)) ?? view.upright;
-    if (upright !== this.upright) {
-      this.turn(upright);
-      this.frame('object', true);
-    }
+    const isTurned = upright !== this.upright;
+    if (isTurned) this.turn(upright);
+    // From where one looks into one scene says nothing of where to look from in another.
+    if (isTurned || isOtherScene) this.frame('object', true);
     this.wish();
   }
 
@@ -102,12 +98,13 @@ export class Picture {
     const [inScene, moved] = [this.body(scene.body, SCENE), this.body(object.body, OBJECT)];
     inScene.color(likely[0]);
     moved.color(likely[1]);
-    this.group = drawContacts(contacts, this.middle, 0.22 * Math.min(moved.radius, inScene.radius));
+    const size = sizeOf(moved.radius, inScene.radius);
+    this.group = drawContacts(contacts, this.middle, 0.22 * Math.min(size, sizeOf(inScene.radius, size)));
     this.above.add(this.group);
     const [contact] = contacts;
     if (contact) {
       const center = new Vector3(...contact.point).sub(this.middle);
-      boxes.contact = new Sphere(center, 0.45 * moved.radius);
+      boxes.contact = new Sphere(center, 0.45 * size);
     }
     boxes.scene = boxes.scene.clone().union(boxes.object);
     return boxes;
@@ -140,7 +137,8 @@ export class Picture {
 
   // Puts one of the spheres into the middle of the picture, seen from where one looks now, or at first.
   frame(name, anew = false) {
-    const { center, radius } = this.spheres[name] ?? this.spheres.object;
+    const { center, radius: known } = this.spheres[name] ?? this.spheres.object;
+    const radius = sizeOf(known, this.spheres.scene.radius);
     const from = anew
       ? new Vector3(...LOOKS[this.upright].from)
       : this.camera.position.clone().sub(this.controls.target);
@@ -165,7 +163,7 @@ export class Picture {
   frontOfObject() {
     const { center, radius } = this.spheres.object;
     const ahead = this.camera.getWorldDirection(new Vector3());
-    return center.clone().sub(this.camera.position).dot(ahead) - 1.15 * radius;
+    return center.clone().sub(this.camera.position).dot(ahead) - 1.15 * sizeOf(radius, this.spheres.scene.radius);
   }
 
   // Draws once, soon: nothing moves on its own.
@@ -182,7 +180,9 @@ export class Picture {
     const { center, radius } = this.spheres.scene;
     const distance = camera.position.distanceTo(controls.target);
     const farthest = camera.position.distanceTo(center) + radius;
-    camera.near = Math.max(distance / 1000, farthest / 1e5, this.isCut ? this.frontOfObject() : 0);
+    // What is far costs depth, but not what one looks at: a stray point may be thousands of kilometres off.
+    const near = Math.max(distance / 1000, Math.min(farthest / 1e5, distance / 10));
+    camera.near = Math.max(near, this.isCut ? this.frontOfObject() : 0);
     camera.far = 1.01 * farthest;
     camera.updateProjectionMatrix();
     scene.fog.near = distance;

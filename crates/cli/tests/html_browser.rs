@@ -10,7 +10,7 @@ use crate::support::browser::{chromium, open};
 use crate::support::{Inputs, case_at, case_file};
 
 /// Red, green and blue of each pixel of a corner of a picture, at the upper left.
-fn corner(path: &Path, [width, height]: [usize; 2]) -> Vec<[i32; 3]> {
+pub(crate) fn corner(path: &Path, [width, height]: [usize; 2]) -> Vec<[i32; 3]> {
     let decoder = png::Decoder::new(BufReader::new(File::open(path).unwrap()));
     let mut reader = decoder.read_info().unwrap();
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];

@@ -10,6 +10,8 @@ mod exit_codes;
 mod help;
 mod html;
 mod html_browser;
+mod html_extent;
+mod html_no_script;
 mod html_scene;
 mod html_touch;
 mod info;

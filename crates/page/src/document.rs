@@ -10,6 +10,9 @@ const VIEWER: &str = include_str!("../viewer/viewer.js");
 const LICENSE_OF_THREE: &str = include_str!("../viewer/LICENSE-three.txt");
 const STYLE: &str = include_str!("page.css");
 
+/// Where no script chooses an answer, all of them are there, and no legend of a picture that is not.
+const ALL: &str = "section.answer[hidden] { display: block; } #legend { display: none; }";
+
 /// Nothing is fetched from anywhere, whatever a file name says.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'";
 
@@ -31,7 +34,8 @@ impl Page<'_> {
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
-             <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+             <title>{title}</title>\n<style>\n{STYLE}</style>\n\
+             <noscript><style>{ALL}</style></noscript>\n</head>\n<body>\n\
              <main>\n<div id=\"picture\"><noscript><p>The picture needs JavaScript; the answers \
              beside it do not.</p></noscript>\n{legend}</div>\n\
              <aside>\n<h1>{title}</h1>\n<div id=\"poses\"></div>\n{}{answers}{PICTURE}\
