@@ -59,6 +59,11 @@ pub(super) fn check(manifest: &Manifest) -> Vec<String> {
     let inherits = |value: Option<&Value>| {
         value.and_then(|v| v.get("workspace")).and_then(Value::as_bool) == Some(true)
     };
+    for key in ["version", "edition", "rust-version", "license"] {
+        if !inherits(manifest.package(key)) {
+            complain(format!("`{key}.workspace = true` is missing"));
+        }
+    }
     if !inherits(manifest.table.get("lints")) {
         complain("`[lints] workspace = true` is missing".into());
     }
@@ -80,12 +85,15 @@ pub(super) mod tests {
         Manifest { folder: "crates/x".into(), table: text.parse().unwrap() }
     }
 
-    const GOOD: &str = "[lints]\nworkspace = true\n[dependencies]\nserde.workspace = true\n";
+    const GOOD: &str = "[package]\nname = 'x'\nversion.workspace = true\nedition.workspace = true\n\
+        rust-version.workspace = true\nlicense.workspace = true\n[lints]\nworkspace = true\n\
+        [dependencies]\nserde.workspace = true\n";
 
     #[test]
     fn a_good_manifest_passes_and_each_fault_is_named() {
         assert_eq!(check(&manifest(GOOD)), Vec::<String>::new());
         for (from, to, named) in [
+            ("license.workspace = true", "license = 'MIT'", "license"),
             ("[lints]\nworkspace = true", "", "lints"),
             ("serde.workspace = true", "serde = '1'", "serde"),
         ] {

@@ -32,16 +32,14 @@ pub enum Measure {
 impl Measure {
     /// Its value; `weights` say how often each answer counts.
     pub fn of(self, sample: &Sample, weights: &[f64]) -> f64 {
+        let share = |[some, all]: [f64; 2]| some / all;
         match self {
             Self::Auc => auc(sample, weights),
             Self::Brier => brier(sample, weights),
             Self::CalibrationError => calibration_error(sample, weights),
             Self::FalseStops(rate) => false_stops(sample, weights, rate),
-            Self::Stops(from) | Self::Misses(from) => {
-                let [wrong, all] = wrong_from(sample, weights, from);
-                let of = usize::from(matches!(self, Self::Misses(_)));
-                wrong[of] / all[of]
-            }
+            Self::Stops(from) => share(wrong_from(sample, weights, from)[0]),
+            Self::Misses(from) => share(wrong_from(sample, weights, from)[1]),
         }
     }
 }

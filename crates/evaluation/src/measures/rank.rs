@@ -33,15 +33,15 @@ pub fn false_stops(sample: &Sample, weights: &[f64], miss_rate: f64) -> f64 {
     f64::NAN
 }
 
-/// Free poses whose score is at or above a threshold, and collisions below it; and how many there are of either.
+/// Free poses whose score is at or above a threshold, of how many, and collisions below it, of how many.
 pub fn wrong_from(sample: &Sample, weights: &[f64], from: f64) -> [[f64; 2]; 2] {
-    let (mut wrong, mut all) = ([0.0; 2], [0.0; 2]);
+    let mut found = [[0.0; 2]; 2];
     for ((&collides, &score), weight) in sample.collides.iter().zip(&sample.scores).zip(weights) {
-        let of = usize::from(collides);
-        all[of] += weight;
-        wrong[of] += if (score >= from) == collides { 0.0 } else { *weight };
+        let [wrong, all] = &mut found[usize::from(collides)];
+        *all += weight;
+        *wrong += if (score >= from) == collides { 0.0 } else { *weight };
     }
-    [wrong, all]
+    found
 }
 
 #[cfg(test)]
@@ -68,9 +68,9 @@ mod tests {
     fn stops_and_misses_of_a_threshold_are_counted_apart() {
         let sample = known();
         // .4 is a collision once, and free once; .2 is missed.
-        assert_eq!(wrong_from(&sample, &sample.ones(), 0.4), [[1.0, 1.0], [3.0, 3.0]]);
+        assert_eq!(wrong_from(&sample, &sample.ones(), 0.4), [[1.0, 3.0], [1.0, 3.0]]);
         let weights = [1.0, 0.0, 2.0, 0.0, 1.0, 0.0];
-        assert_eq!(wrong_from(&sample, &weights, 0.3), [[2.0, 1.0], [2.0, 2.0]]);
+        assert_eq!(wrong_from(&sample, &weights, 0.3), [[2.0, 2.0], [1.0, 2.0]]);
     }
 
     #[test]

@@ -54,8 +54,8 @@ pub(super) fn section(points: usize, poses: usize) -> Result<Section> {
                 of.map(|(pose, said)| (in_mm(pose.signed_distance), said.score)).collect::<Vec<_>>()
             });
             let mut row = vec![format!("{:.0}", 1e3 * std), method.name()];
-            let [wrong, _] = wrong_from(&sample, &sample.ones(), 0.5);
-            row.extend(wrong.map(|count| count.to_string()));
+            let wrong = wrong_from(&sample, &sample.ones(), 0.5);
+            row.extend(wrong.map(|[count, _]| count.to_string()));
             row.push(format!("{:.3}", brier(&sample, &sample.ones())));
             let times: Vec<f64> = said.iter().map(|said| 1e-3 * said.micros).collect();
             row.push(format!("{:.0}", 1e3 * prepare));

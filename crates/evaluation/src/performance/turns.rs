@@ -86,7 +86,7 @@ impl Timed {
     /// Free poses it calls collisions, and collisions it calls free.
     fn wrong(&self) -> [f64; 2] {
         let sample = self.sample(None);
-        wrong_from(&sample, &sample.ones(), 0.5)[0]
+        wrong_from(&sample, &sample.ones(), 0.5).map(|[count, _]| count)
     }
 }
 

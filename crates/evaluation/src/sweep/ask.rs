@@ -54,7 +54,7 @@ pub fn ask(plan: &Plan, methods: &[Asked]) -> Result<Answers> {
         let rows: Vec<Vec<Row>> = tasks
             .into_par_iter()
             .map(|(scene, condition)| {
-                of_draw(scene, condition, methods)
+                of_draw(scene, (&plan.pairs, condition), methods)
                     .with_context(|| format!("{}, draw {}", family.name, scene.number))
             })
             .collect::<Result<_>>()?;
@@ -74,7 +74,7 @@ fn scene<'a>(plan: &Plan, family: &'a Scenes, number: u32) -> Scene<'a> {
 /// The answers about one draw under one condition.
 fn of_draw(
     Scene { family, number, scene, poses, seed }: &Scene<'_>,
-    condition: &Condition,
+    (pairs, condition): (&[Pair], &Condition),
     methods: &[Asked],
 ) -> Result<Vec<Row>> {
     let Condition { points, std } = *condition;
@@ -85,7 +85,7 @@ fn of_draw(
     let seen = Draw { family: family.name, a: &a, b: &b, mesh: scene.b.mesh() };
     let mut rows: Vec<Row> = Vec::new();
     let [of_a, of_b] = [Side::A, Side::B].map(|side| scene.spacing(side, points));
-    for pair in Pair::ALL {
+    for &pair in pairs {
         let spacing = pair.pick(of_a.max(of_b), of_a);
         rows.extend(poses.iter().zip(0..).map(|(pose, number_of_pose)| {
             let question = Question {

@@ -19,15 +19,10 @@ by design, other methods, families one by one, intervals and targets are in [the
 [what a probability means](probability.md) says what none of this can show.";
 
 /// docs/accuracy.md: what a user needs to know.
-pub(super) fn for_users(
-    root: &Path,
-    arguments: &str,
-    answers: &Answers,
-    of_camera: &Answers,
-) -> Page {
+pub(super) fn for_users(root: &Path, arguments: &str, answers: &Answers, views: &Answers) -> Page {
     let title = ("accuracy", "Accuracy");
     let mut page = Page::new(title, ("sweep", arguments), FOR_USERS, root, SEED);
-    page.section(camera::section(of_camera));
+    page.section(camera::section(views));
     page.section(
         Section::new("How well it tells collisions from free poses")
             .text(

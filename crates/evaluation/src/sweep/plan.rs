@@ -1,7 +1,7 @@
 //! What a sweep consists of: one grid of conditions for every report.
 
 use super::scenes::Scenes;
-use crate::answers::Condition;
+use crate::answers::{Condition, Pair};
 
 /// What ours is called in tables and files.
 pub const OURS: &str = "calibrated";
@@ -24,6 +24,8 @@ pub struct Plan {
     pub draws: u32,
     /// Poses of each draw.
     pub poses: usize,
+    /// What the moving body is given as.
+    pub pairs: Vec<Pair>,
     /// How every draw is observed.
     pub conditions: Vec<Condition>,
     /// Distinguishes draws of different use: constants are not fitted on what is judged.
@@ -38,6 +40,7 @@ impl Plan {
             families: Scenes::generated(),
             draws,
             poses,
+            pairs: Pair::ALL.to_vec(),
             conditions: POINTS.into_iter().flat_map(of_points).collect(),
             stream: 0,
         }

@@ -113,17 +113,6 @@ impl Answers {
         ]
     }
 
-    /// The ordinary family whose probabilities are worst, and how far its ECE is above chance.
-    pub fn worst_calibrated(&self, pair: Pair, method: &str) -> (&'static str, f64) {
-        let error = |family: &'static str| {
-            let keep = |q: &Question| q.family == family && ordinary(pair)(q);
-            (family, Judged::pick(self, &[method], keep).error_above_chance(method))
-        };
-        let all = self.families().into_iter().map(error).filter(|(_, error)| !error.is_nan());
-        let worst = all.max_by(|(_, a), (_, b)| a.total_cmp(b));
-        worst.unwrap_or(("no family", f64::NAN))
-    }
-
     /// The AUC of a method on the questions it answers.
     pub(super) fn auc(&self, method: &str, keep: impl Fn(&Question) -> bool) -> Estimate {
         Judged::pick(self, &[method], keep).estimate(method, Measure::Auc)
