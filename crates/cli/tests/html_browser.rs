@@ -2,26 +2,8 @@
 //! is found.
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
-use std::fs::File;
-use std::io::BufReader;
-use std::path::Path;
-
-use crate::support::browser::{chromium, open};
+use crate::support::browser::{chromium, corner, open};
 use crate::support::{Inputs, case_at, case_file};
-
-/// Red, green and blue of each pixel of a corner of a picture, at the upper left.
-pub(crate) fn corner(path: &Path, [width, height]: [usize; 2]) -> Vec<[i32; 3]> {
-    let decoder = png::Decoder::new(BufReader::new(File::open(path).unwrap()));
-    let mut reader = decoder.read_info().unwrap();
-    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut bytes).unwrap();
-    assert_eq!(info.bit_depth, png::BitDepth::Eight);
-    let samples = info.color_type.samples();
-    let rows = bytes.chunks_exact(samples * info.width as usize).take(height);
-    rows.flat_map(|row| row.chunks_exact(samples).take(width))
-        .map(|pixel| std::array::from_fn(|k| i32::from(pixel[k])))
-        .collect()
-}
 
 #[test]
 fn a_page_draws_scene_object_and_contact_and_shows_the_pose_in_its_address() {

@@ -5,8 +5,7 @@
 use base64::Engine as _;
 use serde_json::json;
 
-use crate::html_browser::corner;
-use crate::support::browser::{Tab, chromium};
+use crate::support::browser::{Tab, chromium, corner};
 use crate::support::{Inputs, case_at, case_file, cube, floor};
 
 const SIZE: [u32; 2] = [1000, 700];

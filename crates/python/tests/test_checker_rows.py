@@ -35,6 +35,16 @@ def test_what_lies_under_a_mask_was_taken_for_the_pose(checker):
     assert checker(one(np.ma.masked_array([pose])))["verdict"].tolist() == ["free"]
 
 
+@pytest.mark.parametrize("pose", [np.ma.masked_array(lifted(0.1), mask=True), np.eye(4, dtype=bool)])
+def test_a_pose_that_is_none_beside_one_that_is(checker, pose):
+    """What is under a mask was the pose of its row, and truth values were numbers."""
+    poses = np.empty(2, dtype=object)
+    poses[:] = [pose, lifted(0.1)]
+    answers = checker({"scene": ["floor1.xyz"] * 2, "object": ["plate.xyz"] * 2, "pose": poses})
+    assert list(answers["verdict"]) == ["error", "free"]
+    assert answers["error"][0] == "pose is not 16 numbers: give those of a 4 x 4 matrix, row by row"
+
+
 def test_a_mask_stays_with_a_column_that_is_handed_on(checker):
     weight = np.ma.masked_array([1.0], mask=[True])
     assert checker({**one([lifted(0.03)]), "weight": weight})["weight"] is weight

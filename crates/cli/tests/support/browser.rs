@@ -61,6 +61,20 @@ pub(crate) fn open(browser: &str, inputs: &Inputs, address: &str, more: &[&str])
     }
 }
 
+/// Red, green and blue of each pixel of a corner of a picture, at the upper left.
+pub(crate) fn corner(path: &Path, [width, height]: [usize; 2]) -> Vec<[i32; 3]> {
+    let decoder = png::Decoder::new(BufReader::new(File::open(path).unwrap()));
+    let mut reader = decoder.read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!(info.bit_depth, png::BitDepth::Eight);
+    let samples = info.color_type.samples();
+    let rows = bytes.chunks_exact(samples * info.width as usize).take(height);
+    rows.flat_map(|row| row.chunks_exact(samples).take(width))
+        .map(|pixel| std::array::from_fn(|k| i32::from(pixel[k])))
+        .collect()
+}
+
 /// A page in a browser that is spoken to by the DevTools protocol.
 pub(crate) struct Tab {
     browser: Child,

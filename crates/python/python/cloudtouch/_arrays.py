@@ -50,19 +50,11 @@ def array_of(value: Any, name: str) -> npt.NDArray[Any]:
 
 def points(value: Any, name: str, *, of_image: bool = True) -> tuple[npt.NDArray[Any], tuple[int, int] | None]:
     """Rows of x, y and z, and width and height where they are those of an image."""
-    if isinstance(value, np.ma.MaskedArray):
-        _refuse_mask(name)
-    array = None
-    fields = _columns(value, name)
-    if fields is None:
-        array = array_of(value, name)
-        fields = {field: array[field] for field in array.dtype.names} if array.dtype.names else None
-    if fields is not None:
-        missing = [field for field in "xyz" if field not in fields]
-        if missing:
-            raise ValueError(f"{name} has the fields {', '.join(fields)}: {', '.join(missing)} is missing")
-        array = np.stack([_column(fields[field], f"{name}[{field!r}]") for field in "xyz"], axis=-1)
-    assert array is not None, "either it has columns or it is an array"
+    _refuse_mask(value, name)
+    columns = _columns(value, name)
+    array = array_of(value, name) if columns is None else _side_by_side(columns, name)
+    if array.dtype.names:
+        array = _side_by_side({field: array[field] for field in array.dtype.names}, name)
     if array.shape == (0,):
         array = np.empty((0, 3))
     image_size = None
@@ -89,6 +81,14 @@ def _columns(value: Any, name: str) -> dict[str, Any] | None:
     return {str(column): value[column] if column in ("x", "y", "z") else None for column in names}
 
 
+def _side_by_side(fields: dict[str, Any], name: str) -> npt.NDArray[Any]:
+    """Rows of x, y and z, each of a field of its own."""
+    missing = [field for field in "xyz" if field not in fields]
+    if missing:
+        raise ValueError(f"{name} has the fields {', '.join(fields)}: {', '.join(missing)} is missing")
+    return np.stack([_column(fields[field], f"{name}[{field!r}]") for field in "xyz"], axis=-1)
+
+
 def _column(value: Any, name: str) -> npt.NDArray[Any]:
     """Numbers of one field; what a table of pandas has none of, where it says so, is a missing return."""
     array = array_of(value, name)
@@ -99,8 +99,7 @@ def _column(value: Any, name: str) -> npt.NDArray[Any]:
 
 def numbers(value: Any, name: str, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
     """Numbers of one shape, in double precision."""
-    if isinstance(value, np.ma.MaskedArray):
-        _refuse_mask(name)
+    _refuse_mask(value, name)
     array = array_of(value, name)
     if array.shape == (0,) and shape[0] == FREE:
         # An empty list: none of them.
@@ -162,8 +161,9 @@ def _whole(value: Any, name: str) -> npt.NDArray[Any]:
     return array_of(value, name)
 
 
-def _refuse_mask(name: str) -> npt.NDArray[Any]:
-    raise ValueError(f"{name} is a masked array: give {name}.filled(numpy.nan), NaN for no return")
+def _refuse_mask(value: Any, name: str) -> None:
+    if isinstance(value, np.ma.MaskedArray):
+        raise ValueError(f"{name} is a masked array: give {name}.filled(numpy.nan), NaN for no return")
 
 
 def _refuse_unit(value: Any, name: str) -> None:
