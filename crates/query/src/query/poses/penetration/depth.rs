@@ -5,6 +5,7 @@ use cloudtouch_geom::Vector3;
 use super::along::{FINEST, PRECISION, Way};
 use super::overlap::Overlap;
 use super::shortest::SHORTER;
+use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::query::run::Query;
 use crate::report::Report;
@@ -38,7 +39,14 @@ impl Overlap<'_> {
         }
         let [near, far] = [nearer, farther]
             .map(|until| until.way_out(here, depth.direction, depth.free).map(|way| way.free));
-        Ok((depth, 0.5 * (far? - near?)))
+        // Where the probability leaps, that it does is known to what the way was told to.
+        let told_to = if self.is_of_exact() { 0.0 } else { depth.free - depth.stuck };
+        Ok((depth, 0.5 * (far? - near?).max(told_to)))
+    }
+
+    /// Whether both bodies are meshes, of which nothing is uncertain.
+    fn is_of_exact(&self) -> bool {
+        matches!(self.bodies, (BodyRef::Mesh(_), BodyRef::Mesh(_)))
     }
 
     /// The way out, or the one that is shortest until a collision is as likely as not where that is out sooner:

@@ -36,7 +36,8 @@ pub struct Penetration {
     /// far as is known. Of the probability, not of its upper bound.
     pub depth_m: f64,
     /// Half of how much farther it is until a collision is one standard deviation less likely than not than
-    /// until it is one more likely, along that way, m: what the surfaces leave open of the depth.
+    /// until it is one more likely, along that way, m: what the surfaces leave open of the depth, and not less than
+    /// how closely the way was looked for unless both bodies are exact.
     pub std_m: f64,
 }
 
