@@ -17,7 +17,7 @@ pub use cloudtouch_geom as geom;
 pub use change::patch::Patched;
 pub use error::TreeError;
 pub use gap::{Gap, signed_gap};
-pub use settings::{Traversal, TraversalSettings, TreeSettings};
+pub use settings::{Split, Traversal, TraversalSettings, TreeSettings};
 pub use surfaces::sought::{Sought, SurfaceOutcome};
 pub use surfaces::{SurfaceFlow, SurfacePair, urgency_of_roots, visit_surfaces};
 pub use traverse::{Flow, LeafPair, Outcome, traverse};

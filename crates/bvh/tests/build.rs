@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::common::{bumpy_sheet, degenerate_clouds, is_kept, noisy};
 use cloudtouch_bvh::{
-    LeafBounds, Node, NodeId, Primitive, Primitives, Tree, TreeError, TreeSettings, Visit,
+    LeafBounds, Node, NodeId, Primitive, Primitives, Split, Tree, TreeError, TreeSettings, Visit,
 };
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3, seed};
 use proptest::prelude::*;
@@ -15,9 +15,14 @@ use proptest::prelude::*;
 #[test]
 fn degenerate_clouds_build_well_formed_trees() {
     for (name, cloud) in degenerate_clouds() {
-        for (max_leaf_points, min_leaf_points) in [(1, 1), (2, 1), (40, 10)] {
-            let settings =
-                TreeSettings { max_leaf_points, min_leaf_points, ..TreeSettings::default() };
+        for (max_leaf_points, min_leaf_points, split) in [
+            (1, 1, Split::Median),
+            (2, 1, Split::SurfaceArea),
+            (12, 6, Split::SurfaceArea),
+            (40, 10, Split::Median),
+        ] {
+            let usual = TreeSettings::default();
+            let settings = TreeSettings { max_leaf_points, min_leaf_points, split, ..usual };
             let tree = Tree::build(cloud.clone(), &settings).unwrap();
             tree.validate().unwrap_or_else(|error| panic!("{name}: {error}"));
             assert_eq!(tree.len(), cloud.len(), "{name}");

@@ -275,7 +275,7 @@ fn a_clearance_that_is_given_is_close_to_the_true_gap() {
     }
     // Only gaps of up to three deviations are measured between clouds, which the nearest ones are in
     // the conditions with the most noise.
-    assert!(given >= 6, "only {given} clearances were given");
+    assert!(given >= 5, "only {given} clearances were given");
     assert!(wrong.is_empty(), "{} of {given}:\n{}", wrong.len(), wrong.join("\n"));
 }
 

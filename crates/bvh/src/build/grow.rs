@@ -1,9 +1,12 @@
 //! Grows what is below a node: large halves each on a thread of their own, with the same result.
 
+use cloudtouch_geom::{Matrix3, Point3};
+
+use crate::build::by_area::cut_by_area;
 use crate::build::fit::overlapping;
 use crate::build::parts::{Memory, Part, fitted_halves, fitted_parts, halve, set_far_apart};
 use crate::tree::node::{Link, NodeData};
-use crate::{Moments, Obb, Primitives, TreeSettings};
+use crate::{Moments, Obb, Primitives, Split, TreeSettings};
 
 /// Halves of a node of fewer are not worth a thread of their own, ...
 pub(crate) const LEAST_SHARED: usize = 2048;
@@ -142,8 +145,24 @@ impl<'a> Growth<'a> {
         }
         let (axis, mean) = (axes.column(0).into_owned(), &moments.mean);
         let far = if rounds > 0 { set_far_apart(parts, mean, memory) } else { None };
-        let middle = far.unwrap_or_else(|| halve(parts, &axis, mean, memory));
+        let middle = far
+            .or_else(|| self.cut_by_area(parts, axes, mean, memory))
+            .unwrap_or_else(|| halve(parts, &axis, mean, memory));
         Some(Cut { middle, rounds: if far.is_some() { rounds - 1 } else { 0 } })
+    }
+
+    /// Where the settings ask for that and both parts are split again.
+    fn cut_by_area(
+        &self,
+        parts: &mut [Part],
+        axes: &Matrix3,
+        mean: &Point3,
+        memory: &mut Memory,
+    ) -> Option<usize> {
+        let TreeSettings { split, max_leaf_points, min_leaf_points, .. } = *self.settings;
+        (split == Split::SurfaceArea && parts.len() > max_leaf_points.saturating_mul(2))
+            .then(|| cut_by_area(parts, axes, mean, min_leaf_points, memory))
+            .flatten()
     }
 
     fn fitted(&self, parts: &[Part]) -> (Moments, Obb) {

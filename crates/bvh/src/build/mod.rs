@@ -1,6 +1,8 @@
-//! Builds top-down: a node that holds too much, or is not flat enough, is halved along its
-//! direction of largest variance; first of all what is far from the rest is set apart.
+//! Builds top-down: a node that holds too much, or is not flat enough, is cut across its direction of largest
+//! variance, at the median or where both parts have little surface; first of all what is far from the rest is set
+//! apart.
 
+mod by_area;
 mod fit;
 mod grow;
 mod parts;
@@ -26,7 +28,9 @@ impl Tree {
     /// neither duplicates nor a grid can keep the splitting going, and the depth is log₂ n, and a little more:
     /// what is more than four times as far from the middle of all as half of them is set apart first, and
     /// of the rest again, 32 times at most, so that a few returns from far away leave the tree over the others as
-    /// it is without them.
+    /// it is without them. By [`Split::SurfaceArea`](crate::Split::SurfaceArea) large nodes are cut into parts that are not halves but hold a tenth
+    /// at least, where there are two such parts, so that the tree is deeper by some levels.
+    ///
     /// O(n log n), on one thread; the result depends on nothing but the input.
     ///
     /// # Errors

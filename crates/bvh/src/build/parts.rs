@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use std::slice;
 
 use cloudtouch_geom::{Matrix3, Point3, Vector3};
+use wide::f64x4;
 
 use crate::build::fit::fitted;
 use crate::tree::primitive::centroid;
@@ -20,7 +21,7 @@ const WHOLE: f64 = (1_u64 << 52) as f64;
 /// A primitive that finds its place.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Part {
-    centroid: Point3,
+    pub(crate) centroid: Point3,
     pub(crate) index: u32,
 }
 
@@ -28,10 +29,13 @@ pub(crate) struct Part {
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
     /// The positions along the axis of what is halved.
-    along: Vec<f64>,
-    /// Some of these, with what tells apart those that are equal.
+    pub(crate) along: Vec<f64>,
+    /// Their places along all three, and the slices that these are in.
+    pub(crate) local: Vec<f64x4>,
+    pub(crate) slices: Vec<u8>,
+    /// Some positions, with what tells apart those that are equal.
     told: Vec<Key>,
-    sorted: Vec<Part>,
+    pub(crate) sorted: Vec<Part>,
 }
 
 pub(crate) fn parts_of(primitives: &Primitives, indices: &[u32]) -> Vec<Part> {
@@ -110,7 +114,7 @@ pub(crate) fn halve(
     mean: &Point3,
     memory: &mut Memory,
 ) -> usize {
-    let Memory { along, told, sorted } = memory;
+    let Memory { along, told, sorted, .. } = memory;
     along.clear();
     along.extend(parts.iter().map(|part| axis.dot(&(part.centroid - mean))));
     // The sign of an eigenvector is arbitrary and an odd count halves unevenly; letting the
@@ -179,7 +183,7 @@ fn ends(values: &[f64]) -> (f64, f64) {
 }
 
 /// In four sums, so that none has to wait for the last addition.
-fn sum_of_cubes(values: &[f64]) -> f64 {
+pub(crate) fn sum_of_cubes(values: &[f64]) -> f64 {
     let cube = |value: f64| value * value * value;
     let fours = values.chunks_exact(4);
     let rest: f64 = fours.remainder().iter().map(|&value| cube(value)).sum();

@@ -1,7 +1,7 @@
 //! Settings of clouds and queries, in range and out of it.
 
 use arbitrary::{Result, Unstructured};
-use cloudtouch::bvh::{Traversal, TreeSettings};
+use cloudtouch::bvh::{Split, Traversal, TreeSettings};
 use cloudtouch::noise::{Discretization, SensorModel, Summed};
 use cloudtouch::paper::{Kernel, MeshPoints, RadiusRule, Scaling};
 use cloudtouch::{
@@ -129,6 +129,7 @@ fn tree(u: &mut Unstructured<'_>) -> Result<TreeSettings> {
         min_leaf_points: count(u, usual.min_leaf_points)?,
         max_variation: setting(u, usual.max_variation, 0.0, 0.34)?,
         sibling_overlap: setting(u, usual.sibling_overlap, 0.0, 0.5)?,
+        split: if u.arbitrary()? { Split::SurfaceArea } else { Split::Median },
     })
 }
 

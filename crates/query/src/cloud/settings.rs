@@ -1,6 +1,6 @@
 //! How a cloud of the default path is prepared.
 
-use cloudtouch_bvh::TreeSettings;
+use cloudtouch_bvh::{Split, TreeSettings};
 use cloudtouch_noise::{Combination, MotionNoise, NoiseSettings, PosteriorSettings, SensorModel};
 
 use crate::error::PrepareError;
@@ -34,6 +34,7 @@ impl CloudSettings {
                 max_leaf_points: 12,
                 min_leaf_points: 6,
                 sibling_overlap: 0.0,
+                split: Split::SurfaceArea,
                 ..TreeSettings::default()
             },
         }

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use cloudtouch_bvh::{Primitive, Tree, TreeError, TreeSettings};
+use cloudtouch_bvh::{Primitive, Split, Tree, TreeError, TreeSettings};
 use cloudtouch_geom::{MeshError, Point3, TriangleMesh, Vector3};
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::TriMesh;
@@ -95,7 +95,7 @@ impl Mesh {
         let missing = if closed { Vec::new() } else { merged.missing_triangles() };
         let missing = missing.into_iter().map(|of| of.map(corner)).collect();
         let triangles: Vec<_> = (0..merged.triangles().len()).map(|t| merged.corners(t)).collect();
-        let tree = tree_of(triangles.iter().copied(), LEAF_TRIANGLES, 0.0)?;
+        let tree = tree_of(triangles.iter().copied(), &searched())?;
         // What is open has no inside, and takes none away, but where there is nothing else.
         let counts = |triangle: &usize| closed || !has_solids || is_solid[*triangle];
         let (counting, rest): (Vec<_>, Vec<_>) = (0..triangles.len()).partition(counts);
@@ -210,8 +210,7 @@ impl Mesh {
     pub(crate) fn paper_tree(&self) -> &Tree {
         self.paper_tree.get_or_init(|| {
             let triangles = (0..self.triangle_count()).map(|t| self.corners(t));
-            tree_of(triangles, PAPER_LEAF_TRIANGLES, TreeSettings::default().sibling_overlap)
-                .expect("another tree holds these triangles")
+            tree_of(triangles, &by_the_paper()).expect("another tree holds these triangles")
         })
     }
 
@@ -229,15 +228,28 @@ impl Mesh {
     }
 }
 
-/// A tree over triangles, so many in a leaf at most, with siblings that overlap so far (ε).
+/// How the tree that the default path searches is split.
+fn searched() -> TreeSettings {
+    TreeSettings {
+        max_leaf_points: LEAF_TRIANGLES,
+        min_leaf_points: 1,
+        sibling_overlap: 0.0,
+        split: Split::SurfaceArea,
+        ..TreeSettings::default()
+    }
+}
+
+/// The same for the paper's path.
+fn by_the_paper() -> TreeSettings {
+    let max_leaf_points = PAPER_LEAF_TRIANGLES;
+    TreeSettings { max_leaf_points, min_leaf_points: 1, ..TreeSettings::default() }
+}
+
 fn tree_of(
     triangles: impl Iterator<Item = [Point3; 3]>,
-    max_leaf_points: usize,
-    sibling_overlap: f64,
+    settings: &TreeSettings,
 ) -> Result<Tree, TreeError> {
-    let usual = TreeSettings::default();
-    let settings = TreeSettings { max_leaf_points, min_leaf_points: 1, sibling_overlap, ..usual };
-    Tree::build(triangles.map(Primitive::Triangle).collect(), &settings)
+    Tree::build(triangles.map(Primitive::Triangle).collect(), settings)
 }
 
 pub(super) fn vector(point: &Point3) -> Vector {

@@ -1,6 +1,6 @@
 //! How a cloud is prepared by the paper.
 
-use cloudtouch_bvh::TreeSettings;
+use cloudtouch_bvh::{Split, TreeSettings};
 use cloudtouch_noise::{
     Combination, Discretization, MotionNoise, NoiseSettings, SensorModel, Summed,
 };
@@ -67,6 +67,7 @@ struct TreeAsPrinted {
     min_leaf_points: usize,
     max_variation: f64,
     sibling_overlap: f64,
+    split: Split,
 }
 
 fn as_printed() -> TreeSettings {
