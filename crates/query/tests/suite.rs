@@ -50,6 +50,7 @@ mod scale;
 mod scene;
 mod scene_changes;
 mod scene_may_touch;
+mod seen_between_bars;
 mod slips;
 mod slips_of_sensors;
 mod solved_tightly;

@@ -46,6 +46,13 @@ impl Prepared {
         (by_range || !images.is_empty()).then_some(Sights { prepared: self, images })
     }
 
+    /// Whether one of its depth images looked past a place in a body of such a breadth, m. Returns that were kept up to
+    /// some range say nothing of it.
+    pub(crate) fn has_looked_past(&self, place: &Point3, breadth: f64) -> bool {
+        let is_seen = |sights: Sights<'_>| best_of(&sights.images, place, breadth);
+        self.sights().and_then(is_seen) == Some(Sight::Seen)
+    }
+
     /// Of the surface of the robot in one of its images, or of a link, the share that the camera looked past, where that
     /// is more than of a robot that is there.
     pub(crate) fn robot_passed(&self) -> Option<f64> {

@@ -47,7 +47,7 @@ pub(crate) fn is_enclosed(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> bool {
     // The middle of a ring is in its hole.
     let own = || Some(outer_from_inner.transform_point(&nearest_of(inner, &middle)?));
     match outer {
-        Shape::Cloud(cloud) => surrounds(cloud, &place, own),
+        Shape::Cloud(cloud) => surrounds(cloud, (inner, &place), own),
         Shape::Mesh(mesh) => nearly_surrounds(mesh, &place),
     }
 }
@@ -82,7 +82,7 @@ fn holds_part_of(
     may_hold
         && !is_beside()
         && nearest().is_some_and(|place| match body {
-            Shape::Cloud(cloud) => surrounds(cloud, &place, || Some(place)),
+            Shape::Cloud(cloud) => surrounds(cloud, (larger, &place), || Some(place)),
             Shape::Mesh(mesh) => nearly_surrounds(mesh, &place),
         })
 }
@@ -95,8 +95,12 @@ fn nearest_of(body: Shape<'_>, place: &Point3) -> Option<Point3> {
     }
 }
 
-/// Whether a cloud surrounds a body, of which the middle is given and some place of its own.
-fn surrounds(cloud: &Prepared, middle: &Point3, own: impl FnOnce() -> Option<Point3>) -> bool {
+/// Whether a cloud surrounds a body, of which the middle is given, or what stands for it, and some place of its own.
+fn surrounds(
+    cloud: &Prepared,
+    (body, middle): (Shape<'_>, &Point3),
+    own: impl FnOnce() -> Option<Point3>,
+) -> bool {
     let Some(around) = cloud.around().filter(|around| around.contains(middle)) else {
         return false;
     };
@@ -110,6 +114,10 @@ fn surrounds(cloud: &Prepared, middle: &Point3, own: impl FnOnce() -> Option<Poi
         && cloud.is_searched_at_every_point()
         && has_open_side(cloud.tree(), (cloud.points(), near), (middle, &axes))
     {
+        return false;
+    }
+    // Where a depth image looked past each pixel tells more than how near points are to a single line.
+    if cloud.has_looked_past(middle, body.breadth()) {
         return false;
     }
     let filled = samples.around(middle);
