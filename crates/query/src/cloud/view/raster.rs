@@ -20,6 +20,9 @@ pub(in crate::cloud) const CLEARLY: f64 = 3.0;
 const APART: f64 = 1.5;
 /// One that lacks no more cells than that of a full turn goes all around.
 const LEAST_GAP_CELLS: f64 = 2.0;
+/// The first column of a full turn begins so many of its pixels before straight ahead: a part that no fraction is, so
+/// that no column is where cells meet, however many pixels wide these are.
+const ASIDE: f64 = 0.309_016_994_374_947_4;
 /// Cells of a raster at most, and columns or rows: beyond, they become wider.
 const MOST_CELLS: f64 = 1e7;
 const MOST_COLUMNS: f64 = 1e4;
@@ -119,18 +122,23 @@ impl Raster {
             matches!(lens, Lens::Panorama(_)) && extent[0] + LEAST_GAP_CELLS * pitch > TAU;
         let columns = (TAU / pitch).floor().max(1.0);
         let pitch = if is_round { TAU / columns } else { pitch };
+        let steps = match lens {
+            Lens::Camera(_) => [pitch / CELL_PIXELS; 2],
+            Lens::Panorama(_) => steps_of_panorama(extent, pixels),
+        };
         // A pixel's surface reaches beyond its middle: half a cell around the outermost ones.
-        let low = low.map(|v| v - 0.5 * pitch);
+        let mut low = low.map(|v| v - 0.5 * pitch);
+        if is_round {
+            // None is outermost, and rounding would tell which is first where one is straight ahead, and in which cell
+            // one is that is where two meet.
+            low[0] = -ASIDE * steps[0];
+        }
         let span = extent.map(|side| side / pitch + 1.0);
         let mut size = span.map(|cells| cells.ceil() as usize);
         if is_round {
             size[0] = columns as usize;
         }
         let count = size[0] * size[1];
-        let steps = match lens {
-            Lens::Camera(_) => [pitch / CELL_PIXELS; 2],
-            Lens::Panorama(_) => steps_of_panorama(extent, pixels),
-        };
         let reach = steps.map(|step| (step / pitch).ceil().max(1.0) as isize);
         let is_open = vec![false; if beyond.is_empty() { 0 } else { count }];
         let mut raster = Self {
@@ -224,5 +232,23 @@ mod tests {
                 assert_ne!(raster.sight(&ray), Sight::OutsideView);
             }
         }
+    }
+
+    /// A column straight ahead was the first or the last of the turn as rounding had it, and all cells lay a column
+    /// aside: in one frame a body was behind a thing, in another beside it.
+    #[test]
+    fn what_is_behind_a_thing_hangs_on_no_rounding_of_the_first_column() {
+        let rasters = [0.0, 1e-12, -1e-12].map(|first| raster(true, first));
+        let sights = rasters.each_ref().map(|raster| {
+            let azimuths = (0..200).map(|k| 0.03 * f64::from(k) - 3.0);
+            let ray = |azimuth: f64| {
+                let (sin, cos) = azimuth.to_radians().sin_cos();
+                3.0 * Vector3::new(cos, sin, 0.0)
+            };
+            azimuths.map(|azimuth| raster.sight(&ray(azimuth))).collect::<Vec<_>>()
+        });
+        assert!(sights[0].iter().any(|sight| sight.is_behind()));
+        assert_eq!(sights[0], sights[1]);
+        assert_eq!(sights[0], sights[2]);
     }
 }
