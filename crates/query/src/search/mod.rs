@@ -18,7 +18,7 @@ pub(crate) use cross::crossing::Crossing;
 pub(crate) use measure::beyond::{
     Span, least_beyond, least_of_leaves, least_within, may_be_within,
 };
-pub(crate) use measure::inside::{Inside, Looked, look_inside};
+pub(crate) use measure::inside::{Inside, Looked, is_enough_of_leaf, look_inside};
 pub(crate) use measure::nearest::Nearest;
 pub(crate) use run::{
     Course, Finding, Found, Progress, SOUGHT, WITH_EXTENT, WITHOUT_EXTENT, search,

@@ -63,10 +63,23 @@ impl Inside {
 pub(crate) struct Looked {
     /// `None` where no point is expected inside.
     pub deepest: Option<Inside>,
+    /// The leaf that holds it.
+    pub leaf: Option<NodeId>,
     /// Whether the clock ended it, or what was enough: others may be more clearly inside.
     pub is_cut_short: bool,
     pub nodes_visited: usize,
     pub leaves_prepared: usize,
+}
+
+/// A cloud, a mesh that its points may be inside of, and what is known of the places between them so far.
+struct Within<'a> {
+    cloud: &'a Cloud,
+    mesh: &'a Mesh,
+    mesh_from_cloud: &'a Pose,
+    sides: Sides<'a>,
+    /// PERF: of a leaf that may hold a point inside, most hold none: these need no fit.
+    clear: Sides<'a>,
+    scratch: Scratch,
 }
 
 /// A leaf of a cloud that may hold a point inside a mesh.
@@ -99,6 +112,26 @@ pub(crate) fn look_inside(
     }
 }
 
+/// Whether a leaf of the cloud alone holds a point inside the mesh so clearly that that is enough: then
+/// [`look_inside`] comes by what is.
+pub(crate) fn is_enough_of_leaf(
+    leaf: NodeId,
+    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    a_from_b: &Pose,
+    is_enough: impl Fn(f64) -> bool,
+) -> bool {
+    let (cloud, mesh, mesh_from_cloud) = match (a, b) {
+        (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => (cloud, mesh, a_from_b.inverse()),
+        (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => (cloud, mesh, *a_from_b),
+        _ => return false,
+    };
+    let mut looked = Looked::default();
+    if mesh.has_solids() {
+        looked.look_into(leaf, &mut Within::new(cloud, mesh, &mesh_from_cloud));
+    }
+    is_enough(looked.deviations_given(MOST_DEVIATIONS))
+}
+
 fn deepest(
     cloud: &Cloud,
     mesh: &Mesh,
@@ -111,42 +144,28 @@ fn deepest(
         return looked;
     }
     let mut deepest = None;
+    let mut within = Within::new(cloud, mesh, mesh_from_cloud);
     // PERF: what is deepest comes first, since a point that is clearly inside spares all others their fits.
-    let mut sides = Sides::of(mesh);
     let leaves = looked.leaves_within(cloud, mesh, mesh_from_cloud, clock).into_iter();
     let (inside, others): (Vec<_>, Vec<_>) =
         leaves.partition(|leaf| mesh.is_surely_inside(&leaf.middle));
     let middles: Vec<Point3> = inside.iter().map(|leaf| leaf.middle).collect();
     let in_order = DeepestFirst::new(mesh, &middles).map(|at| inside[at]).chain(others);
-    // PERF: of a leaf that may hold a point inside, most hold none: these need no fit.
-    let mut clear = Sides::of(mesh);
-    let mut scratch = Scratch::default();
     for LeafWithin { leaf, middle, reach } in in_order {
         if looked.deviations() >= MOST_DEVIATIONS {
             break;
         }
         looked.is_cut_short |= clock.is_over();
-        if !looked.is_cut_short && sides.are_clear_around(&middle, reach) {
+        if !looked.is_cut_short && within.sides.are_clear_around(&middle, reach) {
             continue;
         }
         looked.is_cut_short |= is_enough(looked.deviations_given(MOST_DEVIATIONS));
         if looked.is_cut_short {
             break;
         }
-        let shift = cloud.tree().node(leaf).map_or(0.0, |node| node.shift());
-        let computed = cloud.visit_some_of_leaf(
-            leaf,
-            |place| !clear.are_clear_around(&mesh_from_cloud.transform_point(place), shift),
-            &mut scratch,
-            |piece, surfel| {
-                if let Some(inside) = looked.look_at(surfel, (mesh, &mut sides), mesh_from_cloud) {
-                    looked.deepest = Some(inside);
-                    deepest = Some(piece);
-                }
-            },
-        );
-        looked.leaves_prepared += usize::from(computed);
+        deepest = looked.look_into(leaf, &mut within).or(deepest);
     }
+    let Within { mut scratch, .. } = within;
     looked.deepest = looked.deepest.zip(deepest).map(|(inside, piece)| {
         let told = cloud.prepared().told(piece, &mut scratch);
         let outward = mesh_from_cloud.inverse().transform_vector(&inside.outward);
@@ -158,6 +177,13 @@ fn deepest(
         }
     });
     looked
+}
+
+impl<'a> Within<'a> {
+    fn new(cloud: &'a Cloud, mesh: &'a Mesh, mesh_from_cloud: &'a Pose) -> Self {
+        let [sides, clear] = [Sides::of(mesh), Sides::of(mesh)];
+        Self { cloud, mesh, mesh_from_cloud, sides, clear, scratch: Scratch::default() }
+    }
 }
 
 impl Looked {
@@ -224,6 +250,26 @@ impl Looked {
             Visit::Descend
         });
         leaves
+    }
+
+    /// Looks at the points of a leaf; which piece is the deepest of all so far, where it is one of these.
+    fn look_into(&mut self, leaf: NodeId, within: &mut Within<'_>) -> Option<u32> {
+        let Within { cloud, mesh, mesh_from_cloud, sides, clear, scratch } = within;
+        let shift = cloud.tree().node(leaf).map_or(0.0, |node| node.shift());
+        let mut deepest = None;
+        let computed = cloud.visit_some_of_leaf(
+            leaf,
+            |place| !clear.are_clear_around(&mesh_from_cloud.transform_point(place), shift),
+            scratch,
+            |piece, surfel| {
+                if let Some(inside) = self.look_at(surfel, (mesh, sides), mesh_from_cloud) {
+                    (self.deepest, self.leaf) = (Some(inside), Some(leaf));
+                    deepest = Some(piece);
+                }
+            },
+        );
+        self.leaves_prepared += usize::from(computed);
+        deepest
     }
 
     fn deviations(&self) -> f64 {

@@ -2,6 +2,7 @@
 
 mod along;
 mod depth;
+mod held;
 mod overlap;
 mod shortest;
 
@@ -11,6 +12,7 @@ use cloudtouch_geom::{Pose, Vector3};
 use serde::Serialize;
 
 use self::along::{PRECISION, Way};
+use self::held::HeldBy;
 use self::overlap::Overlap;
 use super::directions::{axes, downhill};
 use crate::body::BodyRef;
@@ -92,7 +94,8 @@ impl Query {
             return Ok((report, Some(Penetration::NONE)));
         }
         let query = this.deciding(LUCKIEST * probability);
-        let overlap = Overlap { query, clock, told: |report| report.bounds[1], bodies, a_from_b };
+        let (told, held_by) = (|report: &Report| report.bounds[1], &HeldBy::default());
+        let overlap = Overlap { query, clock, told, bodies, a_from_b, held_by };
         let normals = report.contacts.iter().map(|contact| contact.normal_a_to_b);
         let likely = normals.chain(downhill(&gradient, a_from_b)).chain(axes(a_from_b));
         let (shortest, looked_along) = overlap.shortest(likely)?;

@@ -2,6 +2,7 @@
 
 use cloudtouch_geom::{Point3, Pose, Vector3};
 
+use super::held::HeldBy;
 use crate::body::BodyRef;
 use crate::classifier::Clock;
 use crate::error::QueryError;
@@ -21,14 +22,17 @@ pub(super) struct Overlap<'a> {
     pub told: fn(&Report) -> f64,
     pub bodies: (BodyRef<'a>, BodyRef<'a>),
     pub a_from_b: &'a Pose,
+    pub held_by: &'a HeldBy,
 }
 
 impl Overlap<'_> {
     /// Whether the object is out after a translation.
     pub(super) fn is_free(&self, offset: Vector3) -> Result<bool, QueryError> {
-        let (a, b) = self.bodies;
         let pose = Pose::from_translation(offset).after(self.a_from_b);
-        Ok(!self.clock.is_over() && self.reads_free(&self.query.run(a, b, &pose)?))
+        if self.clock.is_over() || self.held_by.is_still(&self.query, self.bodies, &pose) {
+            return Ok(false);
+        }
+        Ok(self.reads_free(&self.held_by.run(&self.query, self.bodies, &pose)?))
     }
 
     /// Whether it is out by this report.
