@@ -109,19 +109,25 @@ impl Raster {
                 high[axis] = high[axis].max(at[axis]);
             }
         }
-        let extent = [high[0] - low[0], high[1] - low[1]];
-        let area = extent[0] * extent[1];
-        let pitch = (CELL_PIXELS
-            * (area / (pixels[0] * pixels[1]).max(placed.len()).max(1) as f64).sqrt())
-        .max((area / MOST_CELLS).sqrt())
-        .max(extent[0].max(extent[1]) / MOST_COLUMNS);
+        let mut extent = [high[0] - low[0], high[1] - low[1]];
+        let pixel_count = (pixels[0] * pixels[1]).max(placed.len()).max(1) as f64;
+        let pitch_over = |extent: [f64; 2]| {
+            let area = extent[0] * extent[1];
+            (CELL_PIXELS * (area / pixel_count).sqrt())
+                .max((area / MOST_CELLS).sqrt())
+                .max(extent[0].max(extent[1]) / MOST_COLUMNS)
+        };
+        let mut pitch = pitch_over(extent);
         if !(pitch > 0.0 && pitch.is_finite()) {
             return None;
         }
         let is_round =
             matches!(lens, Lens::Panorama(_)) && extent[0] + LEAST_GAP_CELLS * pitch > TAU;
-        let columns = (TAU / pitch).floor().max(1.0);
-        let pitch = if is_round { TAU / columns } else { pitch };
+        if is_round {
+            // Whether a full turn lacks a column is told by rounding, where one is straight behind.
+            extent[0] = TAU;
+            pitch = TAU / (TAU / pitch_over(extent)).round().max(1.0);
+        }
         let steps = match lens {
             Lens::Camera(_) => [pitch / CELL_PIXELS; 2],
             Lens::Panorama(_) => steps_of_panorama(extent, pixels),
@@ -136,7 +142,7 @@ impl Raster {
         let span = extent.map(|side| side / pitch + 1.0);
         let mut size = span.map(|cells| cells.ceil() as usize);
         if is_round {
-            size[0] = columns as usize;
+            size[0] = (TAU / pitch).round() as usize;
         }
         let count = size[0] * size[1];
         let reach = steps.map(|step| (step / pitch).ceil().max(1.0) as isize);
@@ -231,6 +237,26 @@ mod tests {
                 assert_eq!(raster.looks_past(&ray, 0.01), is_past, "{is_left} {degrees}");
                 assert_ne!(raster.sight(&ray), Sight::OutsideView);
             }
+        }
+    }
+
+    /// With some returns of the column straight behind on either side, by rounding, cells were one fewer and wider.
+    #[test]
+    fn how_many_cells_a_turn_has_hangs_on_no_rounding_of_the_last_column() {
+        let rasters = [0.0, 1e-15, 1e-14, 1e-13, 1e-12].map(|aside| {
+            let ray = |i: usize| {
+                let (column, row) = ((i % 1024) as f64, (i / 1024) as f64);
+                let azimuth = column * TAU / 1024.0 + if row % 2.0 == 0.0 { aside } else { -aside };
+                let up = (row / 31.0 - 0.5) * TAU / 7.996;
+                let ahead =
+                    Vector3::new(azimuth.cos() * up.cos(), azimuth.sin() * up.cos(), up.sin());
+                (Point3::from(5.0 * ahead), 0.01)
+            };
+            let (origin, turn) = (Point3::origin(), UnitQuaternion::identity());
+            Raster::new((&origin, &turn), (0..1024 * 32).map(ray), &[], [1024, 32]).unwrap()
+        });
+        for raster in &rasters {
+            assert_eq!(raster.size, rasters[0].size);
         }
     }
 
