@@ -15,6 +15,12 @@ pub(super) const NEIGHBORS: usize = 8;
 pub(super) const BESIDE: usize = 16;
 /// Points that a spacing is told from, at most.
 const REGION_POINTS: usize = 40;
+/// A point may be given so many steps of a grid of as many points, half more than its spacing where these are 40, ...
+const GRID_STEPS: f64 = 1.26;
+/// ... or of a line.
+const LINE_STEPS: f64 = 4.5;
+/// Points of a region that are counted at least.
+const LEAST_COUNTED: f64 = 12.0;
 
 /// The surface at a piece as it is fitted, and what it rests on.
 #[derive(Debug, Clone)]
@@ -134,17 +140,18 @@ pub(in crate::cloud) fn slots<T>(count: usize) -> Vec<OnceLock<T>> {
     (0..count).map(|_| OnceLock::new()).collect()
 }
 
-/// The spacing a point of a leaf may be given at most, on which the tree's bounds rest: half more
-/// than that of as many points spread evenly over the two longest sides of the region's box, or on a
-/// line.
+/// The spacing a point of a leaf may be given at most, on which the tree's bounds rest: somewhat more than that of as
+/// many points on a grid from end to end of the two longest sides of the region's box, or on a line.
 pub(in crate::cloud) fn spacing_cap(tree: &Tree, leaf: Node<'_>) -> f64 {
     let around = region(tree, leaf);
     let mut sides: [f64; 3] = (2.0 * around.obb().half_extents).into();
     sides.sort_by(f64::total_cmp);
     let [_, middle, longest] = sides;
     let count = around.primitive_indices().len().max(1) as f64;
+    // From end to end there is a step less than points. Of fewer, chance tells more than how many there are.
+    let steps = count.max(LEAST_COUNTED).sqrt() - 1.0;
     // On a line the sixth neighbour, which the spacing is measured by, is three steps away.
-    1.5 * (longest * middle / count).sqrt().max(3.0 * longest / count)
+    (GRID_STEPS * (longest * middle).sqrt() / steps).max(LINE_STEPS * longest / count)
 }
 
 /// The largest node around a leaf with few enough points to tell their spacing there.
