@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-use cloudtouch::{Cloud, Detail, Judge, Query, QuerySettings};
+use cloudtouch::{Cloud, CloudSettings, Detail, Judge, Query, QuerySettings};
 use cloudtouch_benches::leaf::bowl_over_floor;
 use cloudtouch_benches::piano_room::{NOISE, classes, piano, prepared, room};
 use cloudtouch_benches::sphere::sphere;
@@ -176,7 +176,7 @@ fn leaf_problems() -> u64 {
 
 fn tree_points() -> u64 {
     let points = sphere(1, POINTS as u64, NOISE);
-    let settings = TreeSettings::default();
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: NOISE }).tree;
     measured(&mut || {
         let tree = Tree::build(points.clone(), &settings).expect("a tree");
         black_box(tree).len() as u64
