@@ -151,7 +151,7 @@ impl<'a> Growth<'a> {
         Some(Cut { middle, rounds: if far.is_some() { rounds - 1 } else { 0 } })
     }
 
-    /// Where the settings ask for that and both parts are split again.
+    /// Where the settings ask for that and halves would be split again.
     fn cut_by_area(
         &self,
         parts: &mut [Part],
