@@ -4,7 +4,8 @@
 use cloudtouch_geom::{Matrix3, Point3};
 use wide::f64x4;
 
-use crate::build::parts::{Memory, Part, sum_of_cubes};
+use crate::build::parts::{Memory, Part, bring_longer_tail_up, ends, part_in_order};
+use crate::tree::obb::in_frame;
 
 /// Cuts are looked for between so many slices of the longest side.
 const SLICES: usize = 32;
@@ -56,18 +57,15 @@ pub(crate) fn cut_by_area(
     let Memory { along, local, slices, sorted, .. } = memory;
     let count = parts.len();
     local.clear();
-    local.extend(in_frame(parts, axes, mean));
+    let in_frame = in_frame(axes, mean);
+    local.extend(parts.iter().map(|part| in_frame(&part.centroid)));
     along.clear();
     along.extend(local.iter().map(|place| place.to_array()[0]));
-    // The sign of an eigenvector is arbitrary: the longer tail is up, in every frame.
-    let sign = if sum_of_cubes(along) < 0.0 { -1.0 } else { 1.0 };
-    let (low, high) = along.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
-        (if sign * x < low { sign * x } else { low }, if sign * x > high { sign * x } else { high })
-    });
+    bring_longer_tail_up(along);
+    let (low, high) = ends(along);
     let scale = SLICES as f64 / (high - low);
-    let slice = |x: f64| (((sign * x - low) * scale) as usize).min(SLICES - 1);
     slices.clear();
-    slices.extend(along.iter().map(|&x| slice(x) as u8));
+    slices.extend(along.iter().map(|x| (((x - low) * scale) as usize).min(SLICES - 1) as u8));
 
     let mut all = [Slice::empty(); SLICES];
     for (&place, &slice) in local.iter().zip(slices.iter()) {
@@ -78,30 +76,7 @@ pub(crate) fn cut_by_area(
     }
     let least_count = least_count.max(count / MOST_TO_ONE).max(1);
     let cut = cheapest(&all, least_count, (high - low) / count as f64)? as u8;
-
-    sorted.resize(sorted.len().max(count), Part::default());
-    let (mut below, mut above) = (0, 0);
-    for (place, &slice) in slices.iter().enumerate() {
-        // PERF: without a branch, as for halves.
-        sorted[above] = parts[place];
-        parts[below] = sorted[above];
-        below += usize::from(slice < cut);
-        above += usize::from(slice >= cut);
-    }
-    parts[below..].copy_from_slice(&sorted[..above]);
-    Some(below)
-}
-
-/// Places of parts along the axes, from the mean.
-fn in_frame(parts: &[Part], axes: &Matrix3, mean: &Point3) -> impl Iterator<Item = f64x4> {
-    let [x, y, z] = [0, 1, 2].map(|k| {
-        let row = axes.row(k);
-        f64x4::from([row[0], row[1], row[2], 0.0])
-    });
-    parts.iter().map(move |part| {
-        let offset = part.centroid - mean;
-        x * f64x4::splat(offset.x) + y * f64x4::splat(offset.y) + z * f64x4::splat(offset.z)
-    })
+    Some(part_in_order(parts, sorted, |place, _| slices[place] < cut))
 }
 
 /// The slice before which the cut costs least, the first of several; `None` where each leaves fewer than so many on
@@ -158,7 +133,7 @@ mod tests {
         places.len() as f64 * (x * y + y * z + z * x)
     }
 
-    /// A thing beside a wall ten times as long, with as many points: the median is within the wall.
+    /// A thing beside a longer wall of more points: the median is within the wall.
     #[test]
     fn what_is_apart_is_parted() {
         let unit = |i, k| seed::unit(seed::derive(4, i, k));
@@ -178,8 +153,8 @@ mod tests {
     }
 
     proptest! {
-        /// Of all cuts along the axis that leave enough on both sides none between two slices costs less, and none
-        /// at all much less; either part keeps its order.
+        /// Of the cuts between two slices that leave enough on both sides none costs less; either part keeps its
+        /// order.
         #[test]
         fn no_cut_between_slices_costs_less(
             mut places in prop::collection::vec([-1.0..1.0_f64, -0.3..0.3_f64, -0.1..0.1_f64], 13..200),
@@ -190,9 +165,9 @@ mod tests {
             let rounded = |x: f64| if step > 0.0 { (x / step).round() * step } else { x };
             places.iter_mut().flatten().for_each(|x| *x = scale * rounded(*x));
             let mut places: Vec<Point3> = places.into_iter().map(Point3::from).collect();
-            if sum_of_cubes(&places.iter().map(|p| p.x).collect::<Vec<_>>()) < 0.0 {
-                places.iter_mut().for_each(|p| p.x = -p.x);
-            }
+            let mut along: Vec<f64> = places.iter().map(|p| p.x).collect();
+            bring_longer_tail_up(&mut along);
+            places.iter_mut().zip(along).for_each(|(p, x)| p.x = x);
             let mut parts = parts_at(&places);
             let found = cut(&mut parts, least_count);
             let least_count = least_count.max(places.len() / MOST_TO_ONE);

@@ -117,17 +117,32 @@ pub(crate) fn halve(
     let Memory { along, told, sorted, .. } = memory;
     along.clear();
     along.extend(parts.iter().map(|part| axis.dot(&(part.centroid - mean))));
-    // The sign of an eigenvector is arbitrary and an odd count halves unevenly; letting the
-    // longer tail point up makes the partition independent of the frame.
+    bring_longer_tail_up(along);
+    let half = parts.len() / 2;
+    let least_above = nth(half, along, parts, told);
+    part_in_order(parts, sorted, |place, part| is_less((along[place], part.index), least_above));
+    half
+}
+
+/// The sign of an eigenvector is arbitrary, an odd count halves unevenly and of cuts that are as good the first is
+/// taken; letting the longer tail point up makes the partition independent of the frame.
+pub(crate) fn bring_longer_tail_up(along: &mut [f64]) {
     if sum_of_cubes(along) < 0.0 {
         along.iter_mut().for_each(|along| *along = -*along);
     }
-    let half = parts.len() / 2;
-    let least_above = nth(half, along, parts, told);
+}
+
+/// Brings those first that are below, by place and part, each half in the order that it had, and says how many they
+/// are.
+pub(crate) fn part_in_order(
+    parts: &mut [Part],
+    sorted: &mut Vec<Part>,
+    is_below: impl Fn(usize, &Part) -> bool,
+) -> usize {
     sorted.resize(sorted.len().max(parts.len()), Part::default());
     let (mut below, mut above) = (0, 0);
-    for (place, &along) in along.iter().enumerate() {
-        let is_below = is_less((along, parts[place].index), least_above);
+    for place in 0..parts.len() {
+        let is_below = is_below(place, &parts[place]);
         // PERF: without a branch, which would be wrong half of the time.
         sorted[above] = parts[place];
         parts[below] = sorted[above];
@@ -135,7 +150,7 @@ pub(crate) fn halve(
         above += usize::from(!is_below);
     }
     parts[below..].copy_from_slice(&sorted[..above]);
-    half
+    below
 }
 
 /// Where a part is along an axis, and its index, which tells apart those at one place.
@@ -173,7 +188,7 @@ fn nth(mut rank: usize, along: &[f64], parts: &[Part], told: &mut Vec<Key>) -> K
     *told.select_nth_unstable_by(rank, in_order).1
 }
 
-fn ends(values: &[f64]) -> (f64, f64) {
+pub(crate) fn ends(values: &[f64]) -> (f64, f64) {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for &value in values {
         low = if value < low { value } else { low };
@@ -183,7 +198,7 @@ fn ends(values: &[f64]) -> (f64, f64) {
 }
 
 /// In four sums, so that none has to wait for the last addition.
-pub(crate) fn sum_of_cubes(values: &[f64]) -> f64 {
+fn sum_of_cubes(values: &[f64]) -> f64 {
     let cube = |value: f64| value * value * value;
     let fours = values.chunks_exact(4);
     let rest: f64 = fours.remainder().iter().map(|&value| cube(value)).sum();

@@ -17,6 +17,20 @@ pub struct Obb {
     pub half_extents: Vector3,
 }
 
+/// Where places are along axes, from an origin, m; the fourth is zero.
+pub(crate) fn in_frame(axes: &Matrix3, origin: &Point3) -> impl Fn(&Point3) -> f64x4 + use<> {
+    // PERF: all three axes at once.
+    let [x, y, z] = [0, 1, 2].map(|k| {
+        let row = axes.row(k);
+        f64x4::from([row[0], row[1], row[2], 0.0])
+    });
+    let origin = *origin;
+    move |place| {
+        let offset = place - origin;
+        x * f64x4::splat(offset.x) + y * f64x4::splat(offset.y) + z * f64x4::splat(offset.z)
+    }
+}
+
 impl Obb {
     /// The box spanned by `axes` that holds all `corners`; `origin` should be near them.
     ///
@@ -26,18 +40,11 @@ impl Obb {
         origin: Point3,
         corners: impl Iterator<Item = &'a Point3>,
     ) -> Self {
-        // PERF: all three axes at once.
-        let [x, y, z] = [0, 1, 2].map(|k| {
-            let row = axes.row(k);
-            f64x4::from([row[0], row[1], row[2], 0.0])
-        });
+        let in_frame = in_frame(&axes, &origin);
         let mut low = f64x4::splat(f64::INFINITY);
         let mut high = f64x4::splat(f64::NEG_INFINITY);
         for corner in corners {
-            let offset = corner - origin;
-            let local = x * f64x4::splat(offset.x)
-                + y * f64x4::splat(offset.y)
-                + z * f64x4::splat(offset.z);
+            let local = in_frame(corner);
             low = low.fast_min(local);
             high = high.fast_max(local);
         }
