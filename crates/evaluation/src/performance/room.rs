@@ -1,4 +1,4 @@
-//! The piano in the room, prepared: every method asked about every pose in turn.
+//! The piano in the room, prepared: every method asked about all poses in turn.
 
 use anyhow::Result;
 use cloudtouch::Detail;
@@ -18,8 +18,8 @@ const LARGE_STD: f64 = 0.01;
 
 const INTRODUCTION: &str = "Room and piano, 10,000 points each, two clouds with default settings. A third of the \
 poses is far (at least 10 cm apart), a third near (exact surfaces within 2 cm of one another, half free and half in \
-overlap), a third deep (at least 5 cm of overlap). The methods take turns at each pose. The first answer is not \
-timed: it fills what is computed once for all poses. Of seven others the least time counts.
+overlap), a third deep (at least 5 cm of overlap). The methods take turns, each asked about one \
+pose after another. The first answer is not timed: it fills what is computed once. Of seven others the least counts.
 
 - `ours`: refined clouds (`Cloud::refined`), as for a scene that many poses are tested in; `verdict alone`: no more is \
 asked (`Detail::Verdict`); `free or not`: even less (`Query::is_free`), yes or no as parry3d and capt say; `not \

@@ -1,4 +1,4 @@
-//! Methods that take turns at every pose: what they say, how long that takes, how often it is wrong.
+//! Methods that take turns over all poses: what they say, how long that takes, how often it is wrong.
 
 use anyhow::{Context, Result};
 use cloudtouch_testkit::poses::LabelledPose;
@@ -29,7 +29,8 @@ struct Answer {
     seconds: f64,
 }
 
-/// Prepares every method, asks each about each pose once, which is not timed, and then in turn.
+/// Prepares every method, asks each about all poses once, which is not timed, and then in turn. As a planner asks, the
+/// poses follow one another: what other methods hold is not fetched between two of them.
 pub(super) fn take_turns(
     methods: &[&dyn Method],
     draw: &Draw<'_>,
@@ -41,21 +42,20 @@ pub(super) fn take_turns(
     for method in methods {
         let (ready, prepare) = timed(|| method.prepare(draw)).context(method.name())?;
         prepared.push(ready);
-        all.push(Timed { name: method.name(), prepare, answers: Vec::new() });
+        let unanswered =
+            |pose: &LabelledPose| Answer { pose: *pose, score: f64::NAN, seconds: f64::INFINITY };
+        let answers = poses.iter().map(unanswered).collect();
+        all.push(Timed { name: method.name(), prepare, answers });
     }
-    for pose in poses {
-        let mut fastest = vec![(f64::NAN, f64::INFINITY); methods.len()];
-        for repeat in 0..=REPEATS {
-            for (ready, fastest) in prepared.iter().zip(&mut fastest) {
-                let (said, seconds) = timed(|| ready(pair, &pose.scene_from_object))?;
-                fastest.0 = said.context("an answer to such a pair")?.score;
+    for repeat in 0..=REPEATS {
+        for (ready, timed_before) in prepared.iter().zip(&mut all) {
+            for answer in &mut timed_before.answers {
+                let (said, seconds) = timed(|| ready(pair, &answer.pose.scene_from_object))?;
+                answer.score = said.context("an answer to such a pair")?.score;
                 if repeat > 0 {
-                    fastest.1 = fastest.1.min(seconds);
+                    answer.seconds = answer.seconds.min(seconds);
                 }
             }
-        }
-        for (timed, (score, seconds)) in all.iter_mut().zip(fastest) {
-            timed.answers.push(Answer { pose: *pose, score, seconds });
         }
     }
     Ok(all)

@@ -18,14 +18,19 @@ pub(super) fn has_open_side(
     (points, near): (&[Point3], f64),
     (place, axes): (&Point3, &Matrix3),
 ) -> bool {
-    Side::all(axes, near).any(|side| {
+    let offset = |to: &Point3| axes.tr_mul(&(to - place));
+    // PERF: away from most of the points nothing is the likeliest.
+    let middle = tree.root().map_or_else(Vector3::zeros, |root| offset(&root.obb().centre));
+    let mut sides = Side::all(near);
+    sides.sort_by(|p, q| p.along(&middle).total_cmp(&q.along(&middle)));
+    sides.into_iter().any(|side| {
         let mut is_open = true;
         tree.visit_nodes(|node| {
-            if !is_open || !side.may_hold(&node.obb(), place) {
+            if !is_open || !side.may_hold(&node.obb(), offset, axes) {
                 return Visit::Prune;
             }
             let mut all = node.primitive_indices().iter();
-            if node.is_leaf() && all.any(|&index| side.holds(&(points[index as usize] - place))) {
+            if node.is_leaf() && all.any(|&index| side.holds(&offset(&points[index as usize]))) {
                 is_open = false;
             }
             Visit::Descend
@@ -35,29 +40,33 @@ pub(super) fn has_open_side(
 }
 
 /// The directions that are nearest to one of an axis, to the half of what lies between it and the others, and
-/// what is near them.
+/// what is near them. Offsets are from its top, by the axes.
 #[derive(Clone, Copy)]
 struct Side {
-    toward: Vector3,
-    across: [Vector3; 2],
+    axis: usize,
+    toward: f64,
     /// What is so far beside it or behind its top counts, m.
     near: f64,
 }
 
 impl Side {
-    fn all(axes: &Matrix3, near: f64) -> impl Iterator<Item = Self> + use<> {
-        let axes = [0, 1, 2].map(|k| axes.column(k).into_owned());
-        (0..3).flat_map(move |k| {
-            let across = [axes[(k + 1) % 3], axes[(k + 2) % 3]];
-            [axes[k], -axes[k]].map(|toward| Self { toward, across, near })
+    fn all(near: f64) -> [Self; 6] {
+        [0, 1, 2, 3, 4, 5].map(|k| Self {
+            axis: k / 2,
+            toward: if k % 2 == 0 { 1.0 } else { -1.0 },
+            near,
         })
     }
 
-    /// How far a place is within each of its four faces, and before its top, m.
+    fn along(self, offset: &Vector3) -> f64 {
+        self.toward * offset[self.axis]
+    }
+
+    /// How far a place is within each of its four faces, and before its top, m: by unit normals.
     fn within_faces(self, offset: &Vector3) -> [f64; 5] {
-        let before = self.toward.dot(offset);
+        let before = self.along(offset);
         let half = ALONG * SLOPE * (1.0 + ROUNDING) * before;
-        let [p, q] = self.across.map(|across| ALONG * across.dot(offset));
+        let [p, q] = [1, 2].map(|k| ALONG * offset[(self.axis + k) % 3]);
         [half - p, half + p, half - q, half + q, before]
     }
 
@@ -66,17 +75,23 @@ impl Side {
     }
 
     /// Whether some place of a box may be in it: not where a face parts them.
-    fn may_hold(self, obb: &Obb, place: &Point3) -> bool {
-        let offset = obb.centre - place;
+    fn may_hold(self, obb: &Obb, offset: impl Fn(&Point3) -> Vector3, axes: &Matrix3) -> bool {
+        let offset = offset(&obb.centre);
         let mut most = self.within_faces(&offset);
+        let size = obb.half_extents.lp_norm(1);
+        let least = -(self.near + ROUNDING * (offset.lp_norm(1) + size));
+        // PERF: most are told by the ball about them.
+        let radius = obb.radius() * (1.0 + ROUNDING);
+        if most.iter().any(|&most| most + radius < least) {
+            return false;
+        }
         for (axis, half) in obb.axes.column_iter().zip(&obb.half_extents) {
-            let along = self.within_faces(&axis.into_owned());
+            let along = self.within_faces(&axes.tr_mul(&axis));
             for (most, along) in most.iter_mut().zip(along) {
                 *most += half * along.abs();
             }
         }
-        let rounding = ROUNDING * (offset.lp_norm(1) + obb.half_extents.sum());
-        most.iter().all(|&most| most >= -(self.near + rounding))
+        most.iter().all(|&most| most >= least)
     }
 }
 
@@ -116,8 +131,8 @@ mod tests {
             let tree = Tree::build(points.iter().map(primitive).collect(), &TreeSettings::default());
             let place = Point3::from(Vector3::from(place));
             let axes = *Pose::from_translation_rpy(Vector3::zeros(), turn).rotation().to_rotation_matrix().matrix();
-            let is_empty = |side: Side| !points.iter().any(|p| side.holds(&(p - place)));
-            let expected = Side::all(&axes, near).any(is_empty);
+            let is_empty = |side: Side| !points.iter().any(|p| side.holds(&axes.tr_mul(&(p - place))));
+            let expected = Side::all(near).into_iter().any(is_empty);
             let found = has_open_side(&tree.unwrap(), (&points, near), (&place, &axes));
             prop_assert_eq!(found, expected);
         }
