@@ -19,7 +19,7 @@ pub use error::TreeError;
 pub use gap::{Gap, signed_gap};
 pub use settings::{Split, Traversal, TraversalSettings, TreeSettings};
 pub use surfaces::sought::{Sought, SurfaceOutcome};
-pub use surfaces::{SurfaceFlow, SurfacePair, urgency_of_roots, visit_surfaces};
+pub use surfaces::{Settled, SurfaceFlow, SurfacePair, urgency_of_roots, visit_surfaces};
 pub use traverse::{Flow, LeafPair, Outcome, traverse};
 pub use tree::Tree;
 pub use tree::bounds::LeafBounds;

@@ -1,11 +1,11 @@
 //! What the search among surfaces leaves out is as far apart as it says.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test helper fails")]
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::common::{bumpy_sheet, noisy};
 use cloudtouch_bvh::{
-    LeafBounds, NodeId, Primitive, Sought, SurfaceFlow, SurfaceOutcome, Tree, TreeError,
+    LeafBounds, NodeId, Primitive, Settled, Sought, SurfaceFlow, SurfaceOutcome, Tree, TreeError,
     TreeSettings, urgency_of_roots, visit_surfaces,
 };
 use cloudtouch_geom::{
@@ -122,6 +122,40 @@ proptest! {
         prop_assert!(all.is_superset(&of_narrow) && all.is_subset(&of_loose));
         prop_assert!(all.len() <= of_narrow.len() + after);
         prop_assert!(outcome.deviations >= within);
+    }
+
+    /// Of a leaf that is settled no more pairs come, and of the others all.
+    #[test]
+    fn of_a_settled_leaf_no_more_pairs_come(
+        streams in (0..1000_u64, 0..1000_u64),
+        offset in prop::array::uniform3(-0.3..0.3_f64),
+        angles in prop::array::uniform3(-3.1..3.1_f64),
+        within in 0.5..8.0_f64,
+        is_a in any::<bool>(),
+        after in 1_usize..6,
+    ) {
+        let pose = Pose::from_translation_rpy(Vector3::from(offset), angles);
+        let [a, b] = [(streams.0, 150), (streams.1 + 1000, 120)]
+            .map(|(stream, count)| small_leaves(discs(stream, count)));
+        let which = if is_a { Settled::A } else { Settled::B };
+        let leaf_of = |a: NodeId, b: NodeId| if is_a { a } else { b };
+        let mut found: BTreeMap<NodeId, usize> = BTreeMap::new();
+        visit_surfaces((&a, &b), &pose, sought(within), |pair| {
+            let pairs = found.entry(leaf_of(pair.a, pair.b)).or_default();
+            *pairs += 1;
+            if *pairs < after {
+                SurfaceFlow::Within(within)
+            } else {
+                SurfaceFlow::WithinSettled(within, which)
+            }
+        }).unwrap();
+        let (all, _, _) = visited((&a, &b), &pose, within);
+        let mut expected: BTreeMap<NodeId, usize> = BTreeMap::new();
+        for (a, b) in all {
+            let pairs = expected.entry(leaf_of(a, b)).or_default();
+            *pairs = after.min(*pairs + 1);
+        }
+        prop_assert_eq!(found, expected);
     }
 
     /// Every two points, one of each tree, that are not in a pair that was visited have as many

@@ -36,8 +36,20 @@ pub enum SurfaceFlow<'a> {
     /// The same, by trees of the same nodes whose boxes and bounds are others and hold too, such as a
     /// clone that was refitted: what waits is tested anew.
     WithinBy(f64, [&'a Tree; 2]),
+    /// As [`Self::Within`], and no more pairs with the leaf of this pair that is named: the caller knows of it beside
+    /// all of the other tree. What is left out for that is not in the outcome.
+    WithinSettled(f64, Settled),
     /// No further pairs.
     Stop,
+}
+
+/// Which leaf of a pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Settled {
+    /// That of the first tree.
+    A,
+    /// That of the second tree.
+    B,
 }
 
 /// Visits the pairs of leaves, one of each tree, that may hold what is sought.
@@ -71,6 +83,10 @@ pub fn visit_surfaces<'a>(
     pairs.test(root_a, root_b, within, &mut outcome);
     while let Some(pair) = pairs.most_urgent() {
         let Waiting { deviations, surfaces, .. } = pair.item;
+        if pairs.is_settled(pair.nodes()) {
+            pairs.drop_most_urgent();
+            continue;
+        }
         if deviations >= within && !pairs.may_cross(&pair) {
             outcome.leave_out(deviations, surfaces);
             pairs.drop_most_urgent();
@@ -86,6 +102,10 @@ pub fn visit_surfaces<'a>(
         let (a, b) = pair.nodes();
         match visit(SurfacePair { a: NodeId(a), b: NodeId(b), deviations, may_cross }) {
             SurfaceFlow::Within(limit) => within = within.min(limit),
+            SurfaceFlow::WithinSettled(limit, settled) => {
+                within = within.min(limit);
+                pairs.settle((a, b), settled);
+            }
             SurfaceFlow::WithinBy(limit, trees) => {
                 within = within.min(limit);
                 pairs.go_on_by(trees, a_from_b, within, &mut outcome);

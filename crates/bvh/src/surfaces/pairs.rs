@@ -6,6 +6,7 @@ use cloudtouch_geom::{Motion, Pose};
 
 use crate::Tree;
 use crate::queue::Queued;
+use crate::surfaces::Settled;
 use crate::surfaces::across_edges::edges_part_surfaces;
 use crate::surfaces::apart::{Apart, Asked, by_faces};
 use crate::surfaces::carried::Carried;
@@ -38,6 +39,8 @@ pub(crate) struct Pairs<'a> {
     recent: [(u32, u32); RECENT],
     /// What a drift does to each of them; empty where B keeps still.
     carried: Vec<Carried>,
+    /// By the names of nodes of A and of B, which are settled; empty before one is.
+    settled: [Vec<bool>; 2],
 }
 
 impl<'a> Pairs<'a> {
@@ -59,7 +62,25 @@ impl<'a> Pairs<'a> {
             moved: Vec::with_capacity(BOXES_OF_PAIR * capacity),
             recent: [(u32::MAX, 0); RECENT],
             carried: Vec::new(),
+            settled: [Vec::new(), Vec::new()],
         }
+    }
+
+    /// Leaves out what is to come of a leaf of a pair.
+    pub(crate) fn settle(&mut self, (a, b): (u32, u32), which: Settled) {
+        let Self { a: of_a, b: of_b, settled: [in_a, in_b], .. } = self;
+        let (tree, node, settled) = match which {
+            Settled::A => (of_a, a, in_a),
+            Settled::B => (of_b, b, in_b),
+        };
+        settled.resize(tree.nodes.len(), false);
+        settled[node as usize] = true;
+    }
+
+    pub(crate) fn is_settled(&self, (a, b): (u32, u32)) -> bool {
+        let is_in = |settled: &[bool], node: u32| settled.get(node as usize).is_some_and(|&is| is);
+        let [in_a, in_b] = &self.settled;
+        is_in(in_a, a) || is_in(in_b, b)
     }
 
     fn nodes(&self, (a, b): (u32, u32)) -> (&'a NodeData, &'a NodeData) {

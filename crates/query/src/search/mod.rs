@@ -4,6 +4,7 @@
 //! It gathers how far apart the surfaces are in standard deviations, how clearly one passes through
 //! the other, and how deep a cloud is inside a closed mesh.
 
+mod add;
 mod compare;
 mod cross;
 mod extent;

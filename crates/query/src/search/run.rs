@@ -10,11 +10,11 @@ use crate::stats::Stats;
 
 use super::compare::meeting::{Meeting, deviations_by_pose};
 use super::cross::crossings::Crossings;
-use super::cross::leaves::cross;
 use super::cross::near_discs::Memory;
-use super::measure::nearest::{Nearest, nearest_pieces};
+use super::measure::compared::FEW;
+use super::measure::nearest::Nearest;
 use super::visit::around::Around;
-use super::visit::leaf::{Between, Leaf};
+use super::visit::leaf::Leaf;
 use super::visit::leaves::Leaves;
 use super::visit::side::Side;
 use super::visit::trees::Trees;
@@ -72,9 +72,11 @@ pub(crate) struct Found<'a> {
     /// The least deviations between two pieces of surface, at most [`MOST_DEVIATIONS`].
     pub deviations: f64,
     pub crossings: Crossings,
-    around: Around,
-    memory: Memory,
-    sides: [Side; 2],
+    pub(super) around: Around,
+    pub(super) memory: Memory,
+    pub(super) sides: [Side; 2],
+    /// With how many leaves of a mesh a leaf of a cloud is compared before it is with all of that.
+    pub(super) few: usize,
     /// How many deviations above the least is looked.
     pub(super) further: f64,
     /// Whether what was left out can change neither of these.
@@ -85,22 +87,36 @@ pub(crate) struct Found<'a> {
 
 /// Looks at the pairs of leaves where the surfaces may touch, after each as far as `course` says.
 pub(crate) fn search<'a>(
+    bodies: (BodyRef<'a>, BodyRef<'a>),
+    a_from_b: &Pose,
+    course: impl Fn(Progress) -> Course,
+    stats: &mut Stats,
+) -> Result<Found<'a>, QueryError> {
+    search_settling(FEW, bodies, a_from_b, course, stats)
+}
+
+/// The same, given with how many leaves of a mesh a leaf of a cloud is compared before it is with all of that.
+fn search_settling<'a>(
+    few: usize,
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Pose,
     course: impl Fn(Progress) -> Course,
     stats: &mut Stats,
 ) -> Result<Found<'a>, QueryError> {
     let (deviations, at_least) = (MOST_DEVIATIONS, f64::INFINITY);
-    let mut found = Found { deviations, at_least, ..Found::default() };
+    let mut found = Found { deviations, at_least, few, ..Found::default() };
     let motion = Motion::from(a_from_b);
     found.sides = [Side::default(), Side::moved(motion)];
     let mut trees = Trees::of(a, b);
     let outcome = visit_surfaces(trees.both(), a_from_b, SOUGHT, |pair| {
         stats.leaf_pairs += 1;
-        match found.told_apart((a, b), &pair, trees.may_be_loose(), stats) {
-            Some(apart) => found.at_least = found.at_least.min(apart),
+        let settled = match found.told_apart((a, b), &pair, trees.may_be_loose(), stats) {
+            Some(apart) => {
+                found.at_least = found.at_least.min(apart);
+                None
+            }
             None => found.add((a, b), &motion, &pair, stats),
-        }
+        };
         trees.count_pair([found.leaves_a.len(), found.leaves_b.len()]);
         let progress = Progress {
             deviations: found.deviations,
@@ -112,7 +128,12 @@ pub(crate) fn search<'a>(
         };
         found.further = further;
         let within = found.deviations_of_interest();
-        trees.flow(within, stats, || course(progress) == Course::Stop)
+        match (trees.flow(within, stats, || course(progress) == Course::Stop), settled) {
+            (SurfaceFlow::Within(within), Some(settled)) => {
+                SurfaceFlow::WithinSettled(within, settled)
+            }
+            (flow, _) => flow,
+        }
     })?;
     stats.nodes_visited += outcome.nodes_visited;
     found.at_least = found.at_least.min(outcome.apart);
@@ -167,36 +188,6 @@ impl<'a> Found<'a> {
         let is_apart =
             |parted: &Parted| parted.surfaces > 0.0 && parted.deviations_beyond(0.0) >= most;
         told_apart(bodies, pair, are_loose, (leaves_a, leaves_b), sides, load, is_apart)
-    }
-
-    fn add(
-        &mut self,
-        (a, b): (BodyRef<'a>, BodyRef<'a>),
-        a_from_b: &Motion,
-        pair: &SurfacePair,
-        stats: &mut Stats,
-    ) {
-        let most = self.deviations_of_interest();
-        let Self { around, sides, .. } = self;
-        let load_a = || around.load(a, pair.a, &mut sides[0], stats);
-        let leaf_a = self.leaves_a.get_or_load(pair.a, load_a);
-        let load_b = || around.load(b, pair.b, &mut sides[1], stats);
-        let leaf_b = self.leaves_b.get_or_load(pair.b, load_b);
-        let Between { of_means, of_surfaces, most_std } = leaf_a.between(leaf_b);
-        self.at_least = self.at_least.min(of_surfaces);
-        // PERF: what the tree knows of leaves whose surface it has not seen is loose.
-        let is_near = pair.deviations < most && of_means <= most * most_std;
-        let nearest = is_near.then(|| nearest_pieces(leaf_a, leaf_b, most, sides));
-        if pair.may_cross && of_surfaces <= 0.0 {
-            let found = (&mut self.crossings, around, &mut self.memory);
-            cross((a, b), a_from_b, (leaf_a, leaf_b), sides, found);
-        }
-        let Some(nearest) = nearest.flatten() else { return };
-        self.deviations = self.deviations.min(nearest.squared.sqrt());
-        if let Some(meeting) = Meeting::of(&nearest.a, &nearest.b) {
-            let toward_b = leaf_b.middle() - leaf_a.middle();
-            self.findings.push(Finding { nearest, meeting, toward_b });
-        }
     }
 }
 
@@ -275,6 +266,22 @@ mod tests {
         (least.sqrt(), crossings.clearness())
     }
 
+    /// Where the pieces of the clouds were measured, in the frame of A, and how likely they collide.
+    fn pieces(found: &Found<'_>) -> Vec<(Point3, f64)> {
+        let leaves = found.leaves_a.in_order().chain(found.leaves_b.in_order());
+        let noisy = leaves.filter_map(|leaf| match leaf {
+            Leaf::Noisy(leaf) => Some(leaf),
+            Leaf::Exact(_) => None,
+        });
+        let within = found.deviations_of_interest();
+        let all = noisy.flat_map(|leaf| leaf.probabilities(within));
+        all.map(|(piece, p)| (piece.point.mean, p)).collect()
+    }
+
+    fn likely(found: &Found<'_>) -> Vec<(Point3, f64)> {
+        pieces(found).into_iter().filter(|(_, p)| *p > 0.0).collect()
+    }
+
     fn all_of<'a>(bodies: (BodyRef<'a>, BodyRef<'a>), pose: &Pose) -> Found<'a> {
         search(bodies, pose, |_| Course::Further(WITH_EXTENT), &mut Stats::default()).unwrap()
     }
@@ -338,6 +345,52 @@ mod tests {
                 let beyond = |bodies| least_beyond(bodies, &pose, margin, &clock).unwrap();
                 let (p, q) = (beyond(fresh), beyond(refined));
                 prop_assert_eq!(p.deviations, q.deviations, "beyond {} m", margin);
+            }
+        }
+
+        #[test]
+        fn leaves_compared_with_all_of_a_mesh_say_what_they_say_of_each_leaf_of_it(
+            is_a in any::<bool>(),
+            is_refined in any::<bool>(),
+            count in 60_usize..400,
+            std in 0.0002_f64..0.01,
+            most_edge in 0.002_f64..0.01,
+            offset in 0.02_f64..0.15,
+            turn in -3.0_f64..3.0,
+            are_boxes in any::<[bool; 2]>(),
+            seed in any::<u64>(),
+        ) {
+            let mesh = scene::subdivide_to_max_edge(&shape(are_boxes[0]), most_edge);
+            let mesh = Body::Mesh(Mesh::prepare(&mesh).unwrap());
+            let cloud = cloud(&shape(are_boxes[1]), count, std, seed);
+            let cloud = Body::Cloud(if is_refined { cloud.refined().unwrap() } else { cloud });
+            let offset = Vector3::new(0.3 * offset, 0.2 * offset, offset);
+            let pose = Pose::from_translation_rpy(offset, [turn, 0.3, 0.0]);
+            let (a, b) = if is_a { (&mesh, &cloud) } else { (&cloud, &mesh) };
+            let bodies: (BodyRef<'_>, BodyRef<'_>) = (a.into(), b.into());
+            let by = |few: usize| {
+                let course = |_| Course::Further(WITH_EXTENT);
+                search_settling(few, bodies, &pose, course, &mut Stats::default()).unwrap()
+            };
+            let one_by_one = by(usize::MAX);
+            for few in [1, FEW] {
+                let at_once = by(few);
+                prop_assert_eq!(one_by_one.deviations, at_once.deviations);
+                let is_same = |p: f64, q: f64| (p - q).abs() <= 1e-12 * (1.0 + p.abs());
+                let [p, q] = [&one_by_one, &at_once].map(|found| found.crossings.clearness());
+                prop_assert!(is_same(p, q), "clearness {} and {}", p, q);
+                let [p, q] = [&one_by_one, &at_once].map(|found| found.extent(bodies, &pose));
+                prop_assert!(is_same(p, q), "extent {} and {}", p, q);
+                let [p, q] = [&one_by_one, &at_once].map(|found| found.extent_by_pose(bodies, &pose));
+                prop_assert!((p - q).norm() <= 1e-9 * (1.0 + p.norm()), "by pose {} and {}", p, q);
+                let BodyRef::Mesh(mesh) = (if is_a { bodies.0 } else { bodies.1 }) else { unreachable!() };
+                let mesh_from_a = if is_a { Pose::identity() } else { pose.inverse() };
+                for (place, _) in pieces(&at_once) {
+                    let distance = mesh.distance(&mesh_from_a.transform_point(&place));
+                    prop_assert!(at_once.at_least <= distance + 1e-9);
+                }
+                let [p, q] = [&one_by_one, &at_once].map(likely);
+                prop_assert_eq!(p, q);
             }
         }
     }

@@ -42,6 +42,10 @@ impl Whitening {
         Self { root: along(stds), inverse: along(stds.map(f64::recip)) }
     }
 
+    pub(in crate::search) fn root(&self) -> &Matrix3 {
+        &self.root
+    }
+
     pub(in crate::search) fn apply(&self, offset: &Vector3) -> Vector3 {
         self.inverse * offset
     }

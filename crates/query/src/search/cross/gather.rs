@@ -1,6 +1,6 @@
 //! Gathers the crossings of two leaves.
 
-use cloudtouch_geom::Motion;
+use cloudtouch_geom::{Motion, Vector3};
 
 use crate::cloud::{DISC_SPACINGS, Edge, Pieces};
 
@@ -117,11 +117,24 @@ pub(in crate::search) fn add_mesh_through_discs(
         if !outline.is_passed_by(&facets.facets) {
             continue;
         }
-        // Once, and by all of the mesh there: however its triangles are shared out to leaves.
-        let through = outline.through(around.near(&middle, std::f64::consts::SQRT_2 * radius));
-        let crossing = of_mesh(disc, normal, &through);
-        found.add(Witness::disc(is_a, disc), &middle, &crossing);
-        discs.set_pierced(k);
-        discs.raise(k, crossing.probability);
+        add_mesh_through_disc(is_a, (discs, k), (&outline, normal), around, found);
     }
+}
+
+/// The same for one disc that is passed: once, and by all of the mesh there, however its triangles are shared out
+/// to leaves.
+pub(super) fn add_mesh_through_disc(
+    is_a: bool,
+    (discs, k): (&mut NoisyLeaf<'_>, usize),
+    (outline, normal): (&Outline, Vector3),
+    around: &mut OfMesh<'_>,
+    found: &mut Crossings,
+) {
+    let disc = &discs.surfels[k];
+    let (middle, radius) = (disc.point.mean, DISC_SPACINGS * disc.spacing);
+    let through = outline.through(around.near(&middle, std::f64::consts::SQRT_2 * radius));
+    let crossing = of_mesh(disc, normal, &through);
+    found.add(Witness::disc(is_a, disc), &middle, &crossing);
+    discs.set_pierced(k);
+    discs.raise(k, crossing.probability);
 }

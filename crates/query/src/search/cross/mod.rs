@@ -11,3 +11,4 @@ mod places;
 mod reached;
 pub(super) mod side;
 pub(super) mod through_mesh;
+pub(super) mod with_all;

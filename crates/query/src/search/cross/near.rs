@@ -62,14 +62,16 @@ pub(in crate::search) fn may_cross_a_disc(
 
 /// The same for facets.
 pub(in crate::search) fn may_cross_a_facet(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> bool {
-    let crosses = |from: &Surfel, normal: &Vector3, facet: &Facet| {
-        let half = DISC_SPACINGS * from.spacing * (1.0 + ROUNDING);
-        let is_along = |across: &Vector3| {
-            facet.height(&from.point.mean).abs() <= half * edge_along(normal, across)
-        };
-        facet.normal.as_ref().is_some_and(is_along)
-            && facet.way_from(&from.point.mean).norm() <= half
+    let mut from = of_edges.surfels.iter();
+    from.any(|from| facets.facets.iter().any(|facet| may_reach_through(from, facet)))
+}
+
+/// Whether an edge may lead from a piece through a facet.
+pub(super) fn may_reach_through(from: &Surfel, facet: &Facet) -> bool {
+    let half = DISC_SPACINGS * from.spacing * (1.0 + ROUNDING);
+    let is_along = |(normal, across): (&Vector3, &Vector3)| {
+        facet.height(&from.point.mean).abs() <= half * edge_along(normal, across)
     };
-    let mut from = of_edges.surfels.iter().filter_map(|from| Some((from, from.normal?)));
-    from.any(|(from, normal)| facets.facets.iter().any(|facet| crosses(from, &normal, facet)))
+    from.normal.as_ref().zip(facet.normal.as_ref()).is_some_and(is_along)
+        && facet.way_from(&from.point.mean).norm() <= half
 }

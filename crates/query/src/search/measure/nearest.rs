@@ -3,6 +3,7 @@
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
 
 use crate::cloud::{Ball, Surfel};
+use crate::search::compare::facet::Facet;
 use crate::search::compare::meeting::squared_deviations;
 use crate::search::compare::whitening::Whitening;
 use crate::search::visit::ends::ROUNDING;
@@ -25,7 +26,20 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
-    fn swapped(self) -> Self {
+    /// A piece, and a facet so many squared deviations and such a way (m) from it.
+    pub(super) fn on_facet(surfel: &Surfel, facet: &Facet, (squared, way): (f64, Vector3)) -> Self {
+        let on_mesh: Point3 = surfel.point.mean + way;
+        Self {
+            squared,
+            a: surfel.point,
+            b: UncertainPoint::exact(on_mesh),
+            normals: [surfel.normal, facet.normal],
+            between: [surfel.index, facet.triangle],
+            spacing: surfel.spacing,
+        }
+    }
+
+    pub(in crate::search) fn swapped(self) -> Self {
         let ([a, b], [of_a, of_b]) = (self.between, self.normals);
         Self { a: self.b, b: self.a, normals: [of_b, of_a], between: [b, a], ..self }
     }
@@ -152,15 +166,7 @@ fn to_exact(
             least_of_it = least_of_it.min(squared);
             if squared < least {
                 least = squared;
-                let on_mesh: Point3 = surfel.point.mean + way;
-                nearest = Some(Nearest {
-                    squared,
-                    a: surfel.point,
-                    b: UncertainPoint::exact(on_mesh),
-                    normals: [surfel.normal, facet.normal],
-                    between: [surfel.index, facet.triangle],
-                    spacing: surfel.spacing,
-                });
+                nearest = Some(Nearest::on_facet(surfel, facet, (squared, way)));
             }
         }
         noisy.squared[place] = least_of_it;

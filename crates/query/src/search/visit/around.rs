@@ -37,6 +37,12 @@ impl Around {
         }
     }
 
+    /// The facets of a leaf of the mesh.
+    pub(super) fn facets(&mut self, mesh: &Mesh, id: NodeId, motion: Option<&Motion>) -> &[Facet] {
+        let place = self.place(mesh, id, motion);
+        self.0.at(place)
+    }
+
     /// Where the facets of a leaf are, which are moved here where they are not.
     fn place(&mut self, mesh: &Mesh, id: NodeId, motion: Option<&Motion>) -> usize {
         self.0.place(id, || Rc::new(facets_of(mesh, id, motion)))

@@ -28,7 +28,7 @@ impl NoisyLeaf<'_> {
     /// is near those where that is open.
     pub(in crate::search) fn end_near(
         &mut self,
-        is_near: impl Fn(&Self, usize) -> bool,
+        mut is_near: impl FnMut(&Self, usize) -> bool,
         side: &mut Side,
     ) {
         if !self.may_end {

@@ -17,6 +17,7 @@ use super::side::Side;
 use crate::search::compare::facet::Facet;
 use crate::search::compare::meeting::probability_at;
 use crate::search::compare::whitening::Whitening;
+use crate::search::measure::compared::Compared;
 
 /// A leaf in the local frame of A: noisy pieces of surface, or exact ones.
 #[derive(Debug)]
@@ -63,6 +64,8 @@ pub(crate) struct NoisyLeaf<'a> {
     crossing: Vec<f64>,
     /// For each surfel whether a mesh was looked at that passes through its disc; empty where none was.
     is_pierced: Vec<bool>,
+    /// What of a mesh it was compared with.
+    pub(in crate::search) compared: Compared,
     pub(in crate::search) ball: Ball,
     /// Around its discs.
     pub(in crate::search) slab: Slab,
@@ -158,6 +161,7 @@ impl<'a> NoisyLeaf<'a> {
             squared: vec![MOST_DEVIATIONS.powi(2); count],
             crossing: Vec::new(),
             is_pierced: Vec::new(),
+            compared: Compared::default(),
             ball,
             slab,
         }

@@ -7,3 +7,4 @@ pub(super) mod leaves;
 pub(super) mod side;
 pub(super) mod trees;
 pub(super) mod unseen;
+pub(super) mod within;
