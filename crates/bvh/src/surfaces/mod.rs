@@ -5,11 +5,13 @@ mod apart;
 mod carried;
 mod pairs;
 mod placed;
+pub(crate) mod settled;
 pub(crate) mod sought;
 
 use cloudtouch_geom::Pose;
 
 use crate::surfaces::pairs::{Pairs, USUAL_PAIRS, Waiting};
+use crate::surfaces::settled::Settled;
 use crate::surfaces::sought::{Sought, SurfaceOutcome};
 use crate::{NodeId, Tree, TreeError};
 
@@ -41,15 +43,6 @@ pub enum SurfaceFlow<'a> {
     WithinSettled(f64, Settled),
     /// No further pairs.
     Stop,
-}
-
-/// Which leaf of a pair.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Settled {
-    /// That of the first tree.
-    A,
-    /// That of the second tree.
-    B,
 }
 
 /// Visits the pairs of leaves, one of each tree, that may hold what is sought.

@@ -6,11 +6,11 @@ use cloudtouch_geom::{Motion, Pose};
 
 use crate::Tree;
 use crate::queue::Queued;
-use crate::surfaces::Settled;
 use crate::surfaces::across_edges::edges_part_surfaces;
 use crate::surfaces::apart::{Apart, Asked, by_faces};
 use crate::surfaces::carried::Carried;
 use crate::surfaces::placed::{MovedBox, Placed};
+use crate::surfaces::settled::Settled;
 use crate::surfaces::sought::{Sought, SurfaceOutcome};
 use crate::tree::node::{NodeData, pose_rounding};
 
