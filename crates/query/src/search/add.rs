@@ -44,41 +44,26 @@ impl<'a> Found<'a> {
             cross((a, b), a_from_b, (leaf_a, leaf_b), sides, found);
         }
         let toward_b = leaf_b.middle() - leaf_a.middle();
-        let settled = match (leaf_a, leaf_b) {
-            (Leaf::Noisy(noisy), Leaf::Exact(exact)) => {
-                let mut mesh = OfMesh { known: around, body: b, a_from_mesh: Some(a_from_b) };
-                noisy
-                    .settle(
-                        ((pair.b, exact), *few),
-                        &mut mesh,
-                        most,
-                        &mut sides[0],
-                        &mut self.crossings,
-                    )
-                    .map(|found| (found, Settled::A))
-            }
-            (Leaf::Exact(exact), Leaf::Noisy(noisy)) => {
-                let mut mesh = OfMesh { known: around, body: a, a_from_mesh: None };
-                noisy
-                    .settle(
-                        ((pair.a, exact), *few),
-                        &mut mesh,
-                        most,
-                        &mut sides[1],
-                        &mut self.crossings,
-                    )
-                    .map(|found| (found, Settled::B))
-            }
+        let beside_mesh = match (leaf_a, leaf_b) {
+            (Leaf::Noisy(noisy), Leaf::Exact(exact)) => Some((noisy, (pair.b, &*exact), true)),
+            (Leaf::Exact(exact), Leaf::Noisy(noisy)) => Some((noisy, (pair.a, &*exact), false)),
             _ => None,
         };
+        let settlement = beside_mesh.and_then(|(noisy, leaf, is_a)| {
+            let (body, a_from_mesh) = if is_a { (b, Some(a_from_b)) } else { (a, None) };
+            let (side, which) = if is_a { (0, Settled::A) } else { (1, Settled::B) };
+            let mut mesh = OfMesh { known: around, body, a_from_mesh };
+            let found = &mut self.crossings;
+            let settlement =
+                noisy.settle((leaf, *few), &mut mesh, most, &mut sides[side], found)?;
+            Some((settlement, which))
+        });
         if let Some(nearest) = nearest.flatten() {
             self.note(nearest, toward_b);
         }
-        if let Some((settlement, which)) = settled {
-            self.take((a, b), (pair, which), settlement, stats);
-            return Some(which);
-        }
-        None
+        let (settlement, which) = settlement?;
+        self.take((a, b), (pair, which), settlement, stats);
+        Some(which)
     }
 
     /// Takes what is known of a leaf of a cloud beside all of a mesh.
