@@ -7,30 +7,34 @@ use cloudtouch_bvh::NodeId;
 pub(in crate::search) const FEW: usize = 8;
 
 /// What of a mesh the pieces of a leaf were compared with.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(in crate::search) enum Compared {
-    /// With the first few leaves that a search came by, of which so many were seen and are small beside it.
-    First {
-        leaves: [Option<NodeId>; FEW],
-        seen: usize,
-        small: usize,
-    },
+    #[default]
+    Nothing,
+    First(Box<First>),
     /// With one leaf after another.
     OneByOne,
     WithAll,
 }
 
-impl Default for Compared {
-    fn default() -> Self {
-        Self::First { leaves: [None; FEW], seen: 0, small: 0 }
-    }
+/// The first leaves of a mesh that a search came by.
+#[derive(Debug, Default)]
+pub(in crate::search) struct First {
+    leaves: [Option<NodeId>; FEW],
+    seen: usize,
+    /// So many of them are small beside the leaf of the cloud.
+    small: usize,
 }
 
 impl Compared {
     /// Notes one more leaf. Those that it was compared with where it is to be with all of the mesh now, as once `few`
     /// were seen and most of them are small.
     pub(super) fn next(&mut self, id: NodeId, is_small: bool, few: usize) -> Option<Vec<NodeId>> {
-        let Self::First { leaves, seen, small } = self else { return None };
+        if matches!(self, Self::Nothing) {
+            *self = Self::First(Box::default());
+        }
+        let Self::First(first) = self else { return None };
+        let First { leaves, seen, small } = &mut **first;
         if let Some(next) = leaves.get_mut(*seen) {
             *next = Some(id);
         }
