@@ -1,6 +1,6 @@
 //! Which triangles are near a place.
 
-use cloudtouch_bvh::{Node, Visit};
+use cloudtouch_bvh::{Node, Obb, Visit};
 use cloudtouch_geom::Point3;
 
 use super::prepare::Mesh;
@@ -26,12 +26,24 @@ impl Mesh {
         &self,
         place: &Point3,
         radius: f64,
+        visit: impl FnMut(Node<'_>),
+    ) {
+        let is_near = |obb: &Obb| {
+            let beyond = (obb.to_local(place).abs() - obb.half_extents).map(|d| d.max(0.0));
+            let is_beyond = beyond.norm() > radius;
+            !is_beyond
+        };
+        self.visit_leaves_where(is_near, visit);
+    }
+
+    /// Calls `visit` for every leaf whose box, and those of all nodes above it, is wanted.
+    pub(crate) fn visit_leaves_where(
+        &self,
+        is_wanted: impl Fn(&Obb) -> bool,
         mut visit: impl FnMut(Node<'_>),
     ) {
         self.tree().visit_nodes(|node| {
-            let obb = node.obb();
-            let beyond = (obb.to_local(place).abs() - obb.half_extents).map(|d| d.max(0.0));
-            if beyond.norm() > radius {
+            if !is_wanted(&node.obb()) {
                 return Visit::Prune;
             }
             if node.is_leaf() {

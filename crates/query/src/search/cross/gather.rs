@@ -9,6 +9,7 @@ use super::crossings::{Crossings, Witness};
 use super::near_discs::{Memory, NearDisc, Told};
 use super::past::Past;
 use super::through_mesh::Outline;
+use crate::search::compare::facet::Facet;
 use crate::search::visit::around::OfMesh;
 use crate::search::visit::leaf::{ExactLeaf, NoisyLeaf};
 
@@ -89,11 +90,22 @@ pub(in crate::search) fn add_edges_through_facets(
         }
         let edge = &motion.map_or(edge, |motion| edge.moved(motion));
         let past = Past::new(of_edges.cloud, edge, motion);
-        for facet in facets.facets.iter() {
-            let Some(crossing) = through_facet(edge, facet, |end| past.of(end)) else { continue };
-            of_edges.raise_ends(edge, crossing.probability);
-            found.add(Witness::edge(motion.is_none(), edge), &edge.middle(), &crossing);
-        }
+        let is_a = motion.is_none();
+        add_edge_through_facets(is_a, (of_edges, edge, &past), &facets.facets, found);
+    }
+}
+
+/// Adds the crossings of one edge of a leaf, in the frame of A, with some facets.
+pub(super) fn add_edge_through_facets(
+    is_a: bool,
+    (of_edge, edge, past): (&mut NoisyLeaf<'_>, &Edge, &Past<'_>),
+    facets: &[Facet],
+    found: &mut Crossings,
+) {
+    for facet in facets {
+        let Some(crossing) = through_facet(edge, facet, |end| past.of(end)) else { continue };
+        of_edge.raise_ends(edge, crossing.probability);
+        found.add(Witness::edge(is_a, edge), &edge.middle(), &crossing);
     }
 }
 

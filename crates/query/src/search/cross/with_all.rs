@@ -1,5 +1,7 @@
 //! Adds the crossings of a leaf of a cloud with all of a mesh: each disc and each edge is taken down its tree alone.
 
+use std::f64::consts::SQRT_2;
+
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::Motion;
 
@@ -7,24 +9,23 @@ use crate::cloud::DISC_SPACINGS;
 use crate::search::visit::around::OfMesh;
 use crate::search::visit::leaf::NoisyLeaf;
 use crate::search::visit::side::Side;
-use crate::search::visit::within::{Metric, Passing};
+use crate::search::visit::within::Passing;
 
-use super::crossing::through_facet;
-use super::crossings::{Crossings, Witness};
-use super::gather::add_mesh_through_disc;
+use super::crossings::Crossings;
+use super::gather::{add_edge_through_facets, add_mesh_through_disc};
 use super::near::may_reach_through;
 use super::past::Past;
 use super::through_mesh::Outline;
 
 /// `looked_at`: the leaves of the mesh whose crossings with it were added before.
 pub(in crate::search) fn cross_with_all(
-    is_a: bool,
     noisy: &mut NoisyLeaf<'_>,
     looked_at: &[NodeId],
     mesh: &mut OfMesh<'_>,
     side: &mut Side,
     found: &mut Crossings,
 ) {
+    let is_a = side.motion.is_none();
     if noisy.has_edges_or(|noisy| may_reach_through_any(noisy, mesh), side) {
         add_edges(noisy, looked_at, mesh, side.motion.as_ref(), found);
     }
@@ -45,14 +46,8 @@ pub(in crate::search) fn cross_with_all(
 
 fn may_reach_through_any(noisy: &NoisyLeaf<'_>, mesh: &mut OfMesh<'_>) -> bool {
     noisy.surfels.iter().filter(|from| from.normal.is_some()).any(|from| {
-        let half = DISC_SPACINGS * from.spacing;
-        let limit = 2.0 * half * half;
-        let mut may_reach = false;
-        mesh.visit_within(&Metric::metres(from.point.mean), limit, |_, facets| {
-            may_reach = may_reach || facets.iter().any(|facet| may_reach_through(from, facet));
-            if may_reach { 0.0 } else { limit }
-        });
-        may_reach
+        let around = SQRT_2 * DISC_SPACINGS * from.spacing;
+        mesh.near(&from.point.mean, around).any(|facet| may_reach_through(from, facet))
     })
 }
 
@@ -69,15 +64,9 @@ fn add_edges(
         let edge = motion.map_or(edge, |motion| edge.moved(motion));
         let past = Past::new(noisy.cloud, &edge, motion);
         mesh.visit_passed(Passing::Line { ends: edge.ends }, |id, facets| {
-            if looked_at.contains(&id) {
-                return;
-            }
-            for facet in facets {
-                let Some(crossing) = through_facet(&edge, facet, |end| past.of(end)) else {
-                    continue;
-                };
-                noisy.raise_ends(&edge, crossing.probability);
-                found.add(Witness::edge(motion.is_none(), &edge), &edge.middle(), &crossing);
+            if !looked_at.contains(&id) {
+                let is_a = motion.is_none();
+                add_edge_through_facets(is_a, (noisy, &edge, &past), facets, found);
             }
         });
     }

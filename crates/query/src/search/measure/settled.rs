@@ -49,15 +49,14 @@ impl NoisyLeaf<'_> {
         side: &mut Side,
         crossings: &mut Crossings,
     ) -> Option<Settlement> {
-        let reach = self.ball.radius + DISC_SPACINGS * self.ball.spacing;
-        let is_small = leaf.ball.radius < SMALL * reach;
+        let is_small = leaf.ball.radius < SMALL * self.reach();
         let compared = self.compared.next(id, is_small, few)?;
         self.make_room();
         self.end_near_mesh(mesh, within * within, side);
         let nearest = self.nearest_of_mesh(mesh, &compared, within * within);
         let at_least = self.apart_from(mesh);
         if at_least <= 0.0 {
-            cross_with_all(side.motion.is_none(), self, &compared, mesh, side, crossings);
+            cross_with_all(self, &compared, mesh, side, crossings);
         }
         Some(Settlement { nearest, at_least })
     }
@@ -125,15 +124,19 @@ impl NoisyLeaf<'_> {
 
     /// How far the surfaces of its pieces are from a mesh at least, by the ball about them, m.
     fn apart_from(&self, mesh: &mut OfMesh<'_>) -> f64 {
-        let ball = &self.ball;
+        let middle = self.ball.middle;
         let mut squared = f64::INFINITY;
-        mesh.visit_within(&Metric::metres(ball.middle), squared, |_, facets| {
-            let ways = facets.iter().map(|facet| facet.way_from(&ball.middle).norm_squared());
+        mesh.visit_within(&Metric::metres(middle), squared, |_, facets| {
+            let ways = facets.iter().map(|facet| facet.way_from(&middle).norm_squared());
             squared = ways.fold(squared, f64::min);
             squared
         });
-        let way = squared.sqrt();
-        let reach = ball.radius + DISC_SPACINGS * ball.spacing;
+        let (way, reach) = (squared.sqrt(), self.reach());
         way - reach - ROUNDING * (way + reach)
+    }
+
+    /// How far the surfaces of its pieces reach from the middle of the ball about them, m.
+    fn reach(&self) -> f64 {
+        self.ball.radius + DISC_SPACINGS * self.ball.spacing
     }
 }

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use cloudtouch_bvh::{NodeId, Obb, Visit};
+use cloudtouch_bvh::{NodeId, Obb};
 use cloudtouch_geom::{Matrix3, Motion, Point3, Vector3};
 
 use crate::body::BodyRef;
@@ -48,7 +48,7 @@ impl Metric {
     fn squared_to(&self, obb: &Obb) -> f64 {
         let offset = self.place - obb.centre;
         let slack = ROUNDING * (offset.lp_norm(1) + obb.half_extents.sum());
-        let beyond = obb.axes.tr_mul(&offset).abs() - obb.half_extents;
+        let beyond = obb.to_local(&self.place).abs() - obb.half_extents;
         let beyond = beyond.map(|along| (along - slack).max(0.0));
         let across = |k: usize| match beyond[k] {
             0.0 => 0.0,
@@ -93,8 +93,8 @@ impl Passing {
             Self::Disc { middle, normal, radius } => {
                 let offset = middle - obb.centre;
                 let slack = slack(&offset);
-                let half = obb.axes.tr_mul(normal).abs().dot(&obb.half_extents);
-                let beyond = obb.axes.tr_mul(&offset).abs() - obb.half_extents;
+                let half = obb.half_width_along(normal);
+                let beyond = obb.to_local(middle).abs() - obb.half_extents;
                 normal.dot(&offset).abs() <= half + slack
                     && beyond.map(|along| along.max(0.0)).norm() <= radius + slack
             }
@@ -140,14 +140,8 @@ impl OfMesh<'_> {
     ) {
         let Self { known, body, a_from_mesh } = self;
         let BodyRef::Mesh(mesh) = *body else { return };
-        mesh.tree().visit_nodes(|node| {
-            if !is_wanted(&node.obb()) {
-                return Visit::Prune;
-            }
-            if node.is_leaf() {
-                visit(node.id(), known.facets(mesh, node.id(), *a_from_mesh));
-            }
-            Visit::Descend
+        mesh.visit_leaves_where(is_wanted, |leaf| {
+            visit(leaf.id(), known.facets(mesh, leaf.id(), *a_from_mesh));
         });
     }
 }
