@@ -33,6 +33,14 @@ impl Neighborhoods {
     /// When there are more points than an index can hold (2³² − 1), or a finite coordinate is
     /// beyond 1e150, where squared distances overflow.
     pub fn new(points: Vec<Point3>) -> Result<Self, NoiseError> {
+        Self::sharing(points.into())
+    }
+
+    /// The same of points that the caller keeps too, without a copy.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn sharing(points: Arc<Vec<Point3>>) -> Result<Self, NoiseError> {
         Ok(Self::of(Positions::new(points)?))
     }
 
@@ -48,7 +56,7 @@ impl Neighborhoods {
     /// When there is not one entry for each point.
     pub fn changed(
         &self,
-        points: Vec<Point3>,
+        points: Arc<Vec<Point3>>,
         before: &[Option<u32>],
     ) -> Result<Option<Self>, NoiseError> {
         assert_eq!(points.len(), before.len(), "one entry for each point");

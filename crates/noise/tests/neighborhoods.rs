@@ -146,7 +146,7 @@ proptest! {
                 points.push(place(9 + i));
                 before.push(None);
             }
-            match index.changed(points.clone(), &before).expect("an index") {
+            match index.changed(points.clone().into(), &before).expect("an index") {
                 Some(changed) => index = changed,
                 None => index = Neighborhoods::new(points.clone()).expect("an index"),
             }
@@ -167,7 +167,7 @@ fn an_index_is_built_anew_where_that_is_better() {
         let mut before: Vec<Option<u32>> = kept.map(Some).collect();
         now.extend(place);
         before.extend(place.map(|_| None));
-        index.changed(now, &before).unwrap().is_some()
+        index.changed(now.into(), &before).unwrap().is_some()
     };
     assert!(becomes(Some(Point3::new(0.5, 0.0, 0.0)), 100) && becomes(None, 80));
     assert!(!becomes(Some(points[50]), 100) && !becomes(None, 70));
@@ -176,10 +176,10 @@ fn an_index_is_built_anew_where_that_is_better() {
     let (mut now, mut before) = (points.clone(), (0..100).map(Some).collect::<Vec<_>>());
     now.swap(0, 1);
     (before[0], before[1]) = (None, None);
-    let swapped = index.changed(now.clone(), &before).unwrap().unwrap();
+    let swapped = index.changed(now.clone().into(), &before).unwrap().unwrap();
     check(&swapped, &now, 7);
     let twice = Neighborhoods::new(vec![points[0]; 30]).unwrap();
-    assert!(twice.changed(vec![points[0]; 29], &before[..29]).unwrap().is_none());
+    assert!(twice.changed(vec![points[0]; 29].into(), &before[..29]).unwrap().is_none());
 }
 
 #[test]

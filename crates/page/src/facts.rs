@@ -31,12 +31,14 @@ fn of_report(report: &Report) -> Vec<Fact> {
 fn place(placement: &Placement) -> Fact {
     let side = |[low, high]: [[f64; 3]; 2]| {
         let [x, y, z]: [f64; 3] = std::array::from_fn(|k| high[k] - low[k]);
-        format!("{x:.3} × {y:.3} × {z:.3} m")
+        let digits = words::decimals(x.max(y).max(z));
+        format!("{x:.digits$} × {y:.digits$} × {z:.digits$} m")
     };
     let mut text =
         format!("object {}, scene {}", side(placement.object_box), side(placement.scene_box));
     if placement.box_gap_m > 0.0 {
-        text += &format!("; the object is {:.3} m outside of the scene", placement.box_gap_m);
+        let gap = words::length(placement.box_gap_m);
+        text += &format!("; the object is {gap} outside of the scene");
     }
     if let Some(nearest) = placement.nearest_m {
         text += &format!("; nearest point about {} away", words::length(nearest));

@@ -7,9 +7,23 @@ pub fn probability(p: f64) -> String {
     if p == 0.0 || p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}") }
 }
 
-/// A distance in millimetres, from a metre on in metres.
+/// A distance in millimetres, of less than a tenth in micrometres, from a metre on in metres.
 pub fn length(metres: f64) -> String {
-    if metres.abs() < 1.0 { format!("{:.1} mm", 1e3 * metres) } else { format!("{metres:.2} m") }
+    match metres.abs() {
+        size if size > 0.0 && size < 1e-4 => format!("{:.1} µm", 1e6 * metres),
+        size if size < 1.0 => format!("{:.1} mm", 1e3 * metres),
+        _ => format!("{metres:.2} m"),
+    }
+}
+
+/// How many decimals of metres tell something of a body so large, m.
+pub fn decimals(size: f64) -> usize {
+    if size > 0.0 { (1.0 - size.log10().floor()).clamp(3.0, 9.0) as usize } else { 3 }
+}
+
+/// How large a body is, m.
+pub fn across(size: f64) -> String {
+    format!("{size:.0$} m across", decimals(size))
 }
 
 /// How much of a body a depth image did not see, and why.
@@ -64,11 +78,7 @@ pub fn clearance(measured: Option<Clearance>, at_least: Option<f64>) -> String {
         Some(Clearance { mean, std, is_bound, .. }) => {
             let deeper = if is_bound { " or deeper" } else { "" };
             let side = if mean < 0.0 { "overlap of" } else { "gap of" };
-            format!(
-                "{side} {:.1} mm{deeper}, standard deviation {:.1} mm",
-                1e3 * mean.abs(),
-                1e3 * std
-            )
+            format!("{side} {}{deeper}, standard deviation {}", length(mean.abs()), length(std))
         }
         None => match at_least.filter(|least| *least > 0.0) {
             Some(least) => format!("at least {}", length(least)),
@@ -84,6 +94,14 @@ mod tests {
     #[test]
     fn a_share_above_the_one_allowed_was_told_as_that_one() {
         assert_eq!([0.0, 0.001, 0.052, 1.0].map(percent), ["0 %", "1 %", "6 %", "100 %"]);
+    }
+
+    #[test]
+    fn what_is_smaller_than_a_millimetre_was_told_as_nothing() {
+        assert_eq!([0.0, 3e-5, 0.0021].map(length), ["0.0 mm", "30.0 µm", "2.1 mm"]);
+        let sizes = [0.0, f64::NAN, 3e-4, 4e-3, 0.2, 21.0];
+        assert_eq!(sizes.map(decimals), [3, 3, 5, 4, 3, 3]);
+        assert_eq!(across(4.26e-3), "0.0043 m across");
     }
 
     #[test]

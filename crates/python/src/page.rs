@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cloudtouch::geom::Pose;
 use cloudtouch::{Body as Prepared, Query, Report, Scene, SceneError, StageReport};
-use cloudtouch_page::{Body as Drawn, Cast, Fact, MOST_VIEWS, Page, View, notebook_frame};
+use cloudtouch_page::{Body as Drawn, Cast, Fact, MOST_VIEWS, Page, View, notebook_frame, words};
 use pyo3::prelude::*;
 
 use crate::error::{refused, refused_for};
@@ -82,7 +82,7 @@ fn about(body: &Prepared, sensor: Option<String>) -> String {
         Prepared::Mesh(mesh) => {
             let kind = mesh.kind();
             let (count, size) = (mesh.triangle_count(), mesh.size());
-            format!("{kind} mesh of {count} triangles in m, {size:.3} m across")
+            format!("{kind} mesh of {count} triangles in m, {}", words::across(size))
         }
     }
 }

@@ -141,6 +141,7 @@ def test_lists_give_the_columns_that_arrays_give(root, whole):
 def test_it_goes_to_workers(root, whole):
     checker = ct.PoseChecker(root, sensor="iso:0.001", query={"prior": 0.5})
     checker(taken(table(), np.arange(2)))
+    assert repr(checker) == f"<PoseChecker: files in {root}, sensors 'iso:0.001' and 'iso:0.001', {ct.Query(prior=0.5)!r}>"
     assert_same(pickle.loads(pickle.dumps(checker))(table()), whole)
 
 

@@ -83,6 +83,7 @@ def test_links_are_where_the_joints_put_them(robot):
 def test_the_link_that_touches_is_told(robot, floor_under):
     checker = ct.RobotChecker(robot, floor_under)
     assert checker.robot is robot and checker.check(ct.Query(), at(0.3)).verdict == "free"
+    assert repr(checker) == f"<RobotChecker of {robot!r}>"
     found = checker.check(ct.Query(), at(0.5))
     assert found.verdict == "in_collision" and found.pairs[0].b in ("left", "right")
     assert {(pair.a, pair.b) for pair in found.pairs} >= {("surroundings", "left"), ("surroundings", "right")}

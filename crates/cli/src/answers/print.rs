@@ -5,6 +5,7 @@ use std::io::{ErrorKind, Write as _};
 use anyhow::{Context, Result};
 use cloudtouch::geom::message::rounded;
 use cloudtouch::{Clearance, StageReport};
+use cloudtouch_page::words::across;
 pub(crate) use cloudtouch_page::words::probability;
 
 use crate::body::{Body, PreparedCloud};
@@ -61,7 +62,7 @@ pub(crate) fn about<C: PreparedCloud>(loaded: &Loaded<C>) -> String {
         Body::Mesh(mesh) => {
             let kind = mesh.kind();
             let count = mesh.triangle_count();
-            format!("{kind} mesh of {count} triangles in {unit}, {:.3} m across", mesh.size())
+            format!("{kind} mesh of {count} triangles in {unit}, {}", across(mesh.size()))
         }
     }
 }

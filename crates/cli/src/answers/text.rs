@@ -169,7 +169,7 @@ pub(crate) fn labelled(label: &str, words: &str) -> String {
 pub(crate) fn place(placement: &Placement) -> String {
     let (object, scene) = (between(placement.object_box), between(placement.scene_box));
     let gap = if placement.box_gap_m > 0.0 {
-        format!(", {:.3} m outside of it", placement.box_gap_m)
+        format!(", {} outside of it", length(placement.box_gap_m))
     } else {
         String::new()
     };
@@ -181,7 +181,11 @@ pub(crate) fn place(placement: &Placement) -> String {
 
 /// A box by its lowest and highest corner, m.
 pub(crate) fn between(corners: [[f64; 3]; 2]) -> String {
-    let [low, high] = corners.map(|p| format!("({:.3}, {:.3}, {:.3})", p[0], p[1], p[2]));
+    let [low, high] = corners;
+    let longest = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+    let digits = words::decimals(longest);
+    let [low, high] =
+        corners.map(|p| format!("({:.digits$}, {:.digits$}, {:.digits$})", p[0], p[1], p[2]));
     format!("{low} to {high} m")
 }
 

@@ -34,16 +34,16 @@ pub(crate) struct Positions {
 }
 
 impl Positions {
-    pub(crate) fn new(points: Vec<Point3>) -> Result<Self, NoiseError> {
-        Self::built(points, Threads::All)
+    pub(crate) fn new(points: impl Into<Arc<Vec<Point3>>>) -> Result<Self, NoiseError> {
+        Self::built(points.into(), Threads::All)
     }
 
     /// The same by the caller alone, who may have what others wait for.
     pub(crate) fn on_this_thread(points: Vec<Point3>) -> Result<Self, NoiseError> {
-        Self::built(points, Threads::This)
+        Self::built(points.into(), Threads::This)
     }
 
-    fn built(points: Vec<Point3>, by: Threads) -> Result<Self, NoiseError> {
+    fn built(points: Arc<Vec<Point3>>, by: Threads) -> Result<Self, NoiseError> {
         if u32::try_from(points.len()).is_err() {
             return Err(NoiseError::TooManyPoints { points: points.len() });
         }
@@ -53,8 +53,7 @@ impl Positions {
         }
         let indices = distinct_indices(&points);
         let tree = Arc::new(tree_of(&points, &indices, by)?);
-        let (points, distinct) = (Arc::new(points), indices.len());
-        Ok(Self { points, distinct, tree, overlay: None, id: Arc::default() })
+        Ok(Self { points, distinct: indices.len(), tree, overlay: None, id: Arc::default() })
     }
 
     /// The index of what the cloud became: `before` says which index each point had, if it is where it
@@ -62,7 +61,7 @@ impl Positions {
     /// are not finite, or too much has changed since the tree was built.
     pub(crate) fn changed(
         &self,
-        points: Vec<Point3>,
+        points: Arc<Vec<Point3>>,
         before: &[Option<u32>],
     ) -> Result<Option<Self>, NoiseError> {
         if self.distinct != self.points.len() {
@@ -78,7 +77,7 @@ impl Positions {
         if overlay.is_none() {
             return Ok(None);
         }
-        let (distinct, tree, points) = (points.len(), self.tree.clone(), Arc::new(points));
+        let (distinct, tree) = (points.len(), self.tree.clone());
         let changed = Self { points, distinct, tree, overlay, id: Arc::default() };
         let is_alone = |place: &Point3| changed.hits_within(place, SAME_PLACE).len() == 1;
         if !new().all(|index: usize| is_alone(&changed.points[index])) {

@@ -69,12 +69,13 @@ mod tests {
     /// A grid that is the same everywhere, in some order.
     fn grid(places: impl Iterator<Item = usize>) -> Positions {
         let place = |i: usize| Point3::new((i % 43) as f64 / 64.0, (i / 43) as f64 / 64.0, 0.0);
-        Positions::new(places.map(place).collect()).unwrap()
+        Positions::new(places.map(place).collect::<Vec<_>>()).unwrap()
     }
 
     fn cloud(copies: usize) -> Positions {
         let place = |i: u64| Point3::from([0, 1, 2].map(|k| seed::unit(seed::derive(2, i, k))));
-        Positions::new((0..1600).map(place).cycle().take(1600 * copies).collect()).unwrap()
+        Positions::new((0..1600).map(place).cycle().take(1600 * copies).collect::<Vec<_>>())
+            .unwrap()
     }
 
     fn places(thinned: &Thinned) -> Vec<Point3> {
@@ -104,7 +105,7 @@ mod tests {
     #[test]
     fn the_same_are_taken_of_points_in_another_order() {
         let points = cloud(1).points().to_vec();
-        let reversed = Positions::new(points.iter().rev().copied().collect()).unwrap();
+        let reversed = Positions::new(points.iter().rev().copied().collect::<Vec<_>>()).unwrap();
         for (a, b) in thin(&cloud(1)).iter().zip(&thin(&reversed)) {
             assert_eq!(places(a), places(b));
             assert_eq!(a.positions().points()[3], cloud(1).points()[a.index(3)]);

@@ -81,6 +81,10 @@ class PoseChecker:
         self._scenes: Kept[Body] = Kept(_given.count(keep, "keep"))
         self._objects: Kept[Body] = Kept(self._scenes.limit)
 
+    def __repr__(self) -> str:
+        sensor, object_sensor = self._sensors
+        return f"<PoseChecker: files in {self._root}, sensors {sensor!r} and {object_sensor!r}, {self._query!r}>"
+
     def __call__(self, rows: Any) -> Any:
         """The columns of ``rows``, and those of :class:`Batch` beside them.
 

@@ -380,6 +380,9 @@ class RobotChecker:
         checked = tuple(Checked._of(*at) for at in given)
         return PathChecked(checked, until, _place(stopped), _place(later), looked_at, verdict)
 
+    def __repr__(self) -> str:
+        return f"<RobotChecker of {self._robot!r}>"
+
     def __copy__(self) -> RobotChecker:
         other = _given.same_kind(self)
         other._robot, other._checker = self._robot, self._checker.copied()

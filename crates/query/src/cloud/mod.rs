@@ -5,6 +5,7 @@ mod accessors;
 mod around;
 mod change;
 mod inside;
+mod local;
 mod makeup;
 mod overlap;
 mod pieces;

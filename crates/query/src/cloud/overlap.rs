@@ -6,7 +6,7 @@ use cloudtouch_geom::Vector3;
 use cloudtouch_noise::Scratch;
 
 use super::prepared::Prepared;
-use super::surface::slots::slots;
+use super::surface::room::Room;
 use super::surface::surfel::Surfel;
 
 /// A part of space that a node takes of its parent.
@@ -20,8 +20,8 @@ impl Prepared {
     /// The surface at the points of a leaf and at those it shares, and whether this call computed it.
     pub(crate) fn shared_leaf(&self, id: NodeId) -> (&[Surfel], bool) {
         let mut computed = false;
-        let shared = self.surface.shared.get_or_init(|| slots(self.tree.node_slots()));
-        let surfels = shared[id.index()].get_or_init(|| {
+        let shared = self.surface.shared.get_or_init(|| Room::new(self.tree.node_slots()));
+        let surfels = shared.get_or_init(id.index(), || {
             computed = true;
             let mut scratch = Scratch::default();
             let indices = self.shared_indices(id);

@@ -11,6 +11,7 @@ use cloudtouch_noise::{
 use crate::error::PrepareError;
 use crate::filter::StageReport;
 
+use super::local::{local, origin_for};
 use super::makeup::scatter::{Flattest, Overstated, scatter};
 use super::makeup::spread::{Sample, sample_of};
 use super::makeup::{Makeup, median};
@@ -87,9 +88,8 @@ impl Prepared {
     ) -> Result<Self, PrepareError> {
         let (low, high) = corners_of(&all)?;
         let sensor = &all.noise;
-        let origin = origin.unwrap_or_else(|| nalgebra::center(&low, &high).coords);
-        let points: Vec<Point3> = all.points.iter().map(|p| p - origin).collect();
-        let neighborhoods = Neighborhoods::new(points)?;
+        let origin = origin.unwrap_or_else(|| origin_for(Vector3::zeros(), (&low, &high)));
+        let neighborhoods = Neighborhoods::sharing(local(&all.points, &origin))?;
         let sample = sample_of(neighborhoods.points());
         // A surface that is known needs no others to be told from, and one point is as good as the next.
         let is_fitted =
@@ -102,7 +102,7 @@ impl Prepared {
         let measured = (&noise, &neighborhoods, sensor);
         let of_leaf = |tree: &Tree, leaf: Node<'_>| {
             let cap = spacing_cap(tree, leaf);
-            (leaf_bounds(leaf, cap, |piece| pieces.index(piece), measured), cap)
+            (leaf_bounds(leaf, cap.into(), |piece| pieces.index(piece), measured), cap)
         };
         let (makeup, tree) = rayon::join(
             || makeup_of(&all, (&neighborhoods, &sample), &origin),
@@ -259,7 +259,7 @@ impl Prepared {
 /// Corners of the box around the points of scans, in the file's frame.
 fn corners_of(all: &Scans) -> Result<(Point3, Point3), PrepareError> {
     let stages = String::new();
-    bounding_box(&all.points).ok_or(PrepareError::NothingLeft { before: 0, stages })
+    bounding_box(all.points.iter()).ok_or(PrepareError::NothingLeft { before: 0, stages })
 }
 
 /// What a cloud of these scans is like as a whole, told from a sample of it, in a local frame about an origin.

@@ -102,7 +102,7 @@ impl<'a> Again<'a> {
 
     /// Made when first asked for. `None` of more points than there may be, which are refused elsewhere.
     pub(super) fn tree(&self) -> Option<&Neighborhoods> {
-        let made = || Neighborhoods::new(self.frame.points.clone()).ok();
+        let made = || Neighborhoods::sharing(self.frame.points.clone()).ok();
         self.tree.get_or_init(made).as_ref()
     }
 

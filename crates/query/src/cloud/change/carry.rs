@@ -36,8 +36,7 @@ impl Prepared {
             let Some(before) = before else { return false };
             let fitted = of.known(before);
             let of_cap = |fitted: &Fitted| {
-                let caps = [&of.surface, &self.surface].map(|surface| &surface.spacing_caps);
-                let caps = [caps[0][before as usize], caps[1][piece]];
+                let caps = [of.surface.cap(before), self.surface.cap(piece as u32)];
                 is_within_caps(caps, || Some(fitted.surfel.spacing))
             };
             let is_same =
@@ -47,14 +46,14 @@ impl Prepared {
             // None of them went.
             fitted.basis = fitted.basis.renumbered(&after);
             // A slot of a new cloud is empty.
-            self.surface.fits[piece].set(Box::new(fitted)).is_ok()
+            self.surface.fits.fill(piece, Box::new(fitted))
         });
         Ok(carried.count())
     }
 
     /// At how many points the surface was computed.
     pub(super) fn known_count(&self) -> usize {
-        let pieces = 0..self.surface.spacing_caps.len() as u32;
+        let pieces = 0..self.surface.piece_count() as u32;
         pieces.filter(|&piece| self.is_known(piece)).count()
     }
 }

@@ -32,10 +32,10 @@ impl Before {
 
     /// Of a piece of a leaf that holds others now.
     fn spacing(&self, piece: u32) -> Option<f64> {
-        match self.surface.fits.get(piece as usize) {
-            Some(slot) => slot.get().map(|fitted| fitted.surfel.spacing),
-            None => self.moved_house.get(&piece).map(|surfel| surfel.spacing),
+        if self.surface.fits.is_empty() {
+            return self.moved_house.get(&piece).map(|surfel| surfel.spacing);
         }
+        self.surface.fits.get(piece as usize).map(|fitted| fitted.surfel.spacing)
     }
 }
 
@@ -82,9 +82,9 @@ impl Prepared {
 
     /// Whether the limit to the spacing of a piece that is kept changes nothing.
     fn is_within_caps(&self, old: &Before, before: &[Option<u32>], piece: u32) -> bool {
-        let cap = self.surface.spacing_caps[piece as usize];
+        let cap = self.surface.cap(piece);
         before[piece as usize].is_some_and(|before| {
-            let cap_before = old.surface.spacing_caps[before as usize];
+            let cap_before = old.surface.cap(before);
             is_within_caps([cap_before, cap], || old.spacing(before))
         })
     }

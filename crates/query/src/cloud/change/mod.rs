@@ -7,11 +7,13 @@ mod lost;
 mod patch;
 mod regrow;
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use cloudtouch_geom::{Point3, PointCloud, Vector3, bounding_box};
 
 use crate::check::coordinates::LARGEST_COORDINATE;
+use crate::cloud::local::origin_for;
 use crate::cloud::prepare::Cloud;
 use crate::cloud::prepared::Prepared;
 use crate::cloud::scans::Scans;
@@ -133,7 +135,7 @@ impl Cloud {
                 return Err(ChangeError::Coordinate { index, value });
             }
             places.extend([scans.points[index], place]);
-            scans.points[index] = place;
+            Arc::make_mut(&mut scans.points)[index] = place;
         }
         let before = (0..).zip(&is_named).map(|(i, moved)| (!moved).then_some(i)).collect();
         let change = self.become_of(scans, before, places)?;
@@ -172,7 +174,7 @@ impl Cloud {
         let mut scans = own.kept(kept);
         let mut before: Vec<Option<u32>> = kept.iter().copied().map(Some).collect();
         if let Some(added) = added {
-            places.extend(&added.points);
+            places.extend(added.points.iter());
             before.extend(added.points.iter().map(|_| None));
             scans.append(added);
         }
@@ -205,7 +207,9 @@ impl Cloud {
     ) -> Result<Change, ChangeError> {
         let start = Instant::now();
         let own = &mut self.prepared;
-        let origin = origin_for(own.origin, &scans.points);
+        let corners = bounding_box(scans.points.iter());
+        let origin =
+            corners.map_or(own.origin, |(low, high)| origin_for(own.origin, (&low, &high)));
         let is_recentred = origin != own.origin;
         let local: Vec<Point3> = places.into_iter().map(|place| place - origin).collect();
         let known = own.known_count();
@@ -254,12 +258,4 @@ impl Cloud {
         self.prepared = prepared;
         Ok(surfaces_kept)
     }
-}
-
-/// The middle of the local frame of a changed cloud: where it was, as long as the points are not farther
-/// from it than they are from one another, so that no precision is lost.
-fn origin_for(current: Vector3, points: &[Point3]) -> Vector3 {
-    let Some((low, high)) = bounding_box(points) else { return current };
-    let middle = nalgebra::center(&low, &high).coords;
-    if (middle - current).norm() <= (high - low).norm() { current } else { middle }
 }

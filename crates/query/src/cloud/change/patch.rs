@@ -10,6 +10,7 @@ use cloudtouch_noise::Neighborhoods;
 use rayon::prelude::*;
 
 use super::lost::{Before, after};
+use crate::cloud::local::local;
 use crate::cloud::makeup::Makeup;
 use crate::cloud::makeup::spread::sample_of;
 use crate::cloud::pieces::Pieces;
@@ -56,10 +57,10 @@ impl Prepared {
         {
             return Ok(None);
         }
-        let points: Vec<Point3> = scans.points.iter().map(|point| point - self.origin).collect();
+        let points = local(&scans.points, &self.origin);
         let near = match self.neighborhoods.changed(points.clone(), before)? {
             Some(near) => near,
-            None => Neighborhoods::new(points)?,
+            None => Neighborhoods::sharing(points)?,
         };
         let sample = sample_of(near.points());
         let chosen = || Pieces::chosen(&near, &scans.noise, &sample);
@@ -120,7 +121,7 @@ impl Prepared {
         let surface = &mut self.surface;
         let caps = &surface.spacing_caps;
         let cap = |before: &Option<u32>| before.map_or(0.0, |before| caps[before as usize]);
-        let mut spacing_caps: Vec<f64> = before.iter().map(cap).collect();
+        let mut spacing_caps: Vec<f32> = before.iter().map(cap).collect();
         for leaf in patched.leaves.iter().filter_map(|&id| tree.leaf(id)) {
             let cap = spacing_cap(tree, leaf);
             leaf.primitive_indices().iter().for_each(|&i| spacing_caps[i as usize] = cap);
@@ -129,20 +130,20 @@ impl Prepared {
         let mut old = mem::replace(surface, fresh);
         let mut moved_house = BTreeMap::new();
         for leaf in &patched.stale {
-            old.edges[leaf.index()].take();
-            let known = old.leaves[leaf.index()].take();
+            old.edges.take(leaf.index());
+            let known = old.leaves.take(leaf.index());
             let surfels = known.into_iter().flat_map(|leaf| leaf.surfels);
             moved_house.extend(surfels.map(|surfel| (surfel.index, surfel)));
         }
         surface.leaves = mem::take(&mut old.leaves);
         surface.edges = mem::take(&mut old.edges);
-        surface.leaves.resize_with(tree.node_slots(), Default::default);
-        surface.edges.resize_with(tree.node_slots(), Default::default);
-        let after = after(before, old.spacing_caps.len());
+        surface.leaves.set_count(tree.node_slots());
+        surface.edges.set_count(tree.node_slots());
+        let after = after(before, old.piece_count());
         let mut numbered = (0..).zip(before);
         let is_renumbered =
             numbered.any(|(index, before)| before.is_some_and(|before| before != index));
-        surface.leaves.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|leaf| {
+        surface.leaves.par_iter_mut().for_each(|leaf| {
             // Where a piece ends others tell, of which some may be lost.
             leaf.ended.take();
             if is_renumbered {
@@ -150,8 +151,7 @@ impl Prepared {
             }
         });
         if is_renumbered {
-            let edges = surface.edges.par_iter_mut().filter_map(|slot| slot.get_mut());
-            edges.for_each(|leaf| leaf.renumber(&after));
+            surface.edges.par_iter_mut().for_each(|leaf| leaf.renumber(&after));
         }
         Before { surface: old, moved_house, after }
     }
@@ -174,7 +174,7 @@ mod tests {
     /// Whether a limit to its spacing acts on a piece.
     fn is_limited(cloud: &Prepared, piece: u32) -> bool {
         let spacing = cloud.fit(piece, &mut Scratch::default()).spacing;
-        spacing >= cloud.surface.spacing_caps[piece as usize]
+        spacing >= cloud.surface.cap(piece)
     }
 
     /// All of a piece but what is left of its covariance where it ends.

@@ -10,6 +10,7 @@ use super::lost::Before;
 use crate::cloud::prepared::Prepared;
 use crate::cloud::primitives::leaf_bounds;
 use crate::cloud::surface::leaf::LeafSurface;
+use crate::cloud::surface::room::Room;
 use crate::cloud::surface::slots::{Basis, Fitted};
 use crate::cloud::surface::surfel::{End, Surfel};
 use crate::error::PrepareError;
@@ -38,21 +39,20 @@ impl Prepared {
             return Ok(kept);
         }
         let mut fits = old.surface.fits;
-        let carried = |(index, before): (usize, &Option<u32>)| {
+        self.surface.fits = Room::new(before.len());
+        for (index, before) in before.iter().enumerate() {
             let before = before.filter(|_| !is_lost[index]);
-            let fitted = before.and_then(|before| fits[before as usize].take());
-            fitted.map_or_else(Default::default, |mut fitted| {
+            if let Some(mut fitted) = before.and_then(|before| fits.take(before as usize)) {
                 fitted.surfel.index = index as u32;
                 fitted.basis = fitted.basis.renumbered(&old.after);
-                fitted.into()
-            })
-        };
-        self.surface.fits = before.iter().enumerate().map(carried).collect();
+                self.surface.fits.fill(index, fitted);
+            }
+        }
         for leaf in self.leaves_with(|piece| self.has_other_edges(piece, &is_lost)) {
-            self.surface.edges[leaf.index()].take();
+            self.surface.edges.take(leaf.index());
         }
         for leaf in self.leaves_with(|piece| is_lost[piece as usize]) {
-            self.surface.leaves[leaf.index()].take();
+            self.surface.leaves.take(leaf.index());
         }
         let Self { noise, neighborhoods, scans, surface, tree, .. } = self;
         let measured = (&*noise, &*neighborhoods, &scans.noise);
@@ -85,7 +85,7 @@ impl Prepared {
         leaves.dedup();
         // A piece that may end elsewhere is as it was fitted first.
         let as_fitted = |scratch: &mut Scratch, &leaf: &NodeId| {
-            let known = self.surface.leaves[leaf.index()].get();
+            let known = self.surface.leaves.get(leaf.index());
             let pieces = self.tree.leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
             let mut surfel = |(place, &piece): (usize, &u32)| {
                 let of_leaf = || known.and_then(|leaf| leaf.surfels.get(place)).copied();
@@ -104,11 +104,11 @@ impl Prepared {
         let surfaces: Vec<LeafSurface> =
             leaves.par_iter().map_init(Scratch::default, as_fitted).collect();
         for (leaf, surface) in leaves.iter().zip(surfaces) {
-            self.surface.leaves[leaf.index()] = Box::new(surface).into();
+            self.surface.leaves.replace(leaf.index(), Box::new(surface));
         }
         self.end_again(&others, is_lost);
         let leaves = self.leaves_with(|piece| self.has_other_edges(piece, is_lost));
-        leaves.iter().for_each(|leaf| drop(self.surface.edges[leaf.index()].take()));
+        leaves.iter().for_each(|leaf| drop(self.surface.edges.take(leaf.index())));
         let mut amended = [leaves, others].concat();
         amended.sort_unstable();
         amended.dedup();
@@ -135,7 +135,7 @@ impl Prepared {
         };
         let ended: Vec<_> = leaves.par_iter().map_init(Scratch::default, ended).collect();
         for (leaf, ended) in leaves.iter().zip(ended) {
-            if let Some(surface) = self.surface.leaves[leaf.index()].get_mut() {
+            if let Some(surface) = self.surface.leaves.get_mut(leaf.index()) {
                 ended.into_iter().for_each(|(place, surfel)| surface.surfels[place] = surfel);
             }
         }

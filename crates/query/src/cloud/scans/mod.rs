@@ -6,6 +6,7 @@ mod others;
 mod refused;
 
 use std::mem;
+use std::sync::Arc;
 
 use cloudtouch_geom::{Covariance, Point3, PointCloud, UnitVector3};
 use cloudtouch_noise::{Combination, SensorNoise};
@@ -25,7 +26,7 @@ use super::view::range::{self, Range};
 /// Scans in one frame.
 #[derive(Debug, Clone)]
 pub(super) struct Scans {
-    pub points: Vec<Point3>,
+    pub points: Arc<Vec<Point3>>,
     /// Position noise of each point.
     pub noise: SensorNoise,
     /// Where they are to be used, and every scan has them.
@@ -71,7 +72,7 @@ impl Scans {
     /// To put others behind.
     fn none() -> Self {
         Self {
-            points: Vec::new(),
+            points: Arc::default(),
             noise: SensorNoise::from(Vec::new()),
             normals: Some(Vec::new()),
             rows: Vec::new(),
@@ -131,7 +132,7 @@ impl Scans {
             taken: taken.into_iter().collect(),
             images,
             ranges,
-            points: kept.points,
+            points: kept.points.into(),
             rows,
             stages,
         })
@@ -181,7 +182,7 @@ impl Scans {
         self.step = self.step.into_iter().chain(others.step).max_by(f64::total_cmp);
         self.sensor_doubts.extend(others.sensor_doubts);
         self.taken.extend(others.taken);
-        append(&mut self.points, others.points);
+        append(Arc::make_mut(&mut self.points), Arc::unwrap_or_clone(others.points));
     }
 
     /// Whether the noise of all points is the same, and normals are known, in both or in neither.
@@ -205,7 +206,7 @@ impl Scans {
         // What was to be doubted of points that are gone says nothing of those that come.
         let is_gone = kept.is_empty();
         Self {
-            points: of(&self.points, kept),
+            points: of(&self.points, kept).into(),
             noise,
             normals: self.normals.as_ref().map(|normals| of(normals, kept)),
             rows: if self.rows.is_empty() { Vec::new() } else { of(&self.rows, kept) },

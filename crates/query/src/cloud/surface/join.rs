@@ -15,12 +15,12 @@ use crate::cloud::prepared::Prepared;
 impl Prepared {
     /// The edges that start or end at a point of a leaf, where they were joined.
     pub(crate) fn known_edges(&self, id: NodeId) -> Option<&LeafEdges> {
-        self.surface.edges[id.index()].get().map(|edges| &**edges)
+        self.surface.edges.get(id.index()).map(|edges| &**edges)
     }
 
     /// The edges that start or end at a point of a leaf, by buffers that leaves nearby were joined with.
     pub(crate) fn leaf_edges(&self, id: NodeId, scratch: &mut Scratch) -> &LeafEdges {
-        self.surface.edges[id.index()].get_or_init(|| {
+        self.surface.edges.get_or_init(id.index(), || {
             let pieces = self.tree.leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
             Box::new(edges_of(self, pieces, self.thin_side(id), scratch))
         })

@@ -22,13 +22,13 @@ impl Prepared {
 
     /// [`Self::leaf`] with what encloses it, where it was computed.
     pub(crate) fn known_leaf(&self, id: NodeId) -> Option<&LeafSurface> {
-        self.surface.leaves[id.index()].get().map(|leaf| &**leaf)
+        self.surface.leaves.get(id.index()).map(|leaf| &**leaf)
     }
 
     /// [`Self::leaf`] with what encloses it, by buffers that leaves nearby were computed with.
     pub(crate) fn leaf_surface(&self, id: NodeId, scratch: &mut Scratch) -> (&LeafSurface, bool) {
         let mut computed = false;
-        let leaf = self.surface.leaves[id.index()].get_or_init(|| {
+        let leaf = self.surface.leaves.get_or_init(id.index(), || {
             computed = true;
             let pieces = self.tree.node(id).map_or(&[][..], |leaf| leaf.primitive_indices());
             self.gather_around(pieces, scratch);
@@ -48,7 +48,7 @@ impl Prepared {
         mut visit: impl FnMut(u32, &Surfel),
     ) -> bool {
         let pieces = self.tree.leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
-        if let Some(leaf) = self.surface.leaves[id.index()].get() {
+        if let Some(leaf) = self.surface.leaves.get(id.index()) {
             pieces.iter().zip(&leaf.surfels).for_each(|(&piece, surfel)| visit(piece, surfel));
             return false;
         }
@@ -97,22 +97,21 @@ impl Prepared {
     /// The surface at one piece as it is fitted, but that a refined cloud knows no covariance other than what
     /// is left of it where it ends.
     pub(in crate::cloud) fn fit(&self, piece: u32, scratch: &mut Scratch) -> &Surfel {
-        match self.surface.fits.get(piece as usize) {
-            Some(slot) => &slot.get_or_init(|| Box::new(self.fitted(piece, scratch))).surfel,
-            None => self.of_leaf(piece),
+        if self.is_refined() {
+            return self.of_leaf(piece);
         }
+        let fitted = || Box::new(self.fitted(piece, scratch));
+        &self.surface.fits.get_or_init(piece as usize, fitted).surfel
     }
 
     /// The surface at one piece as it is fitted, where that is known.
     pub(in crate::cloud) fn known(&self, piece: u32) -> Option<Fitted> {
-        match self.surface.fits.get(piece as usize) {
-            Some(slot) => slot.get().map(|fitted| (**fitted).clone()),
-            None => {
-                let surfel = *self.of_leaf(piece);
-                let basis = self.basis(piece).filter(|_| surfel.end != End::CutOff)?.clone();
-                Some(Fitted { surfel: Surfel { end: basis.end(), ..surfel }, basis })
-            }
+        if !self.is_refined() {
+            return self.surface.fits.get(piece as usize).map(|fitted| (**fitted).clone());
         }
+        let surfel = *self.of_leaf(piece);
+        let basis = self.basis(piece).filter(|_| surfel.end != End::CutOff)?.clone();
+        Some(Fitted { surfel: Surfel { end: basis.end(), ..surfel }, basis })
     }
 
     /// What the surface at a piece rests on, where it was computed.
@@ -142,13 +141,13 @@ impl Prepared {
 
     /// How far the fit at a piece looked, m, where that is known and not everywhere.
     pub(super) fn known_reach(&self, piece: u32) -> Option<f64> {
-        let fitted = self.surface.fits.get(piece as usize)?.get()?;
+        let fitted = self.surface.fits.get(piece as usize)?;
         Some(fitted.basis.reach).filter(|reach| reach.is_finite())
     }
 
     /// Whether the surface at one piece was computed already.
     pub(in crate::cloud) fn is_known(&self, piece: u32) -> bool {
-        self.surface.fits.get(piece as usize).is_none_or(|slot| slot.get().is_some())
+        self.is_refined() || self.surface.fits.get(piece as usize).is_some()
     }
 
     /// Whether the surface was computed everywhere and the tree fitted to it.
@@ -167,7 +166,7 @@ impl Prepared {
     /// Computes the surface at one piece.
     pub(in crate::cloud) fn fitted(&self, piece: u32, scratch: &mut Scratch) -> Fitted {
         let index = self.pieces.index(piece);
-        let cap = self.surface.spacing_caps[piece as usize];
+        let cap = self.surface.cap(piece);
         let near = &self.neighborhoods;
         let refined = match self.scans.normals.as_ref().map(|normals| normals[index]) {
             Some(normal) => {

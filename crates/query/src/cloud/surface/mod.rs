@@ -9,6 +9,7 @@ mod lazy;
 pub(super) mod leaf;
 pub(super) mod onward;
 mod refine;
+pub(super) mod room;
 pub(super) mod slab;
 pub(super) mod slots;
 pub(super) mod surfel;

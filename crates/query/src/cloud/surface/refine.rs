@@ -1,7 +1,5 @@
 //! The surface everywhere at once, and the tree fitted to it: for bodies that are queried often.
 
-use std::sync::OnceLock;
-
 use cloudtouch_bvh::{NodeId, Primitive, Tree, TreeError};
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3};
 use cloudtouch_noise::Scratch;
@@ -31,16 +29,16 @@ impl Prepared {
         };
         let told: Vec<_> = leaves.par_iter().map_init(Scratch::default, told).collect();
         for (leaf, told) in leaves.iter().zip(told) {
-            self.surface.leaves[leaf.index()] = Box::new(told).into();
+            self.surface.leaves.replace(leaf.index(), Box::new(told));
         }
         leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
             self.leaf_edges(leaf, scratch);
         });
         // Every leaf has copies of its own.
-        let slots = std::mem::take(&mut self.surface.fits);
-        let basis =
-            |slot: OnceLock<Box<Fitted>>| slot.into_inner().map_or(Basis::UNKNOWN, |f| f.basis);
-        self.surface.bases = slots.into_iter().map(basis).collect();
+        let mut fits = std::mem::take(&mut self.surface.fits);
+        let of = |fitted: Box<Fitted>| fitted.basis.without_left();
+        let basis = |piece| fits.take(piece).map_or(Basis::UNKNOWN, of);
+        self.surface.bases = (0..self.surface.piece_count()).map(basis).collect();
         self.surface.fitted.take();
         self.tree = self.fitted_tree(Tree::set_extents)?;
         self.enclose_again();
@@ -83,7 +81,7 @@ impl Prepared {
         &self,
         set: impl FnOnce(&mut Tree, Vec<Covariance>) -> Result<(), TreeError>,
     ) -> Result<Tree, TreeError> {
-        let pieces = self.surface.spacing_caps.len();
+        let pieces = self.surface.piece_count();
         let mut extents = vec![Covariance::zero(); pieces];
         let mut primitives =
             vec![Primitive::point(UncertainPoint::exact(Point3::origin())); pieces];
@@ -104,10 +102,10 @@ impl Prepared {
         let ids: Vec<NodeId> = self.tree.leaves().map(|leaf| leaf.id()).collect();
         for id in ids {
             let thin = self.thin_side(id);
-            if let Some(leaf) = self.surface.leaves[id.index()].get_mut() {
+            if let Some(leaf) = self.surface.leaves.get_mut(id.index()) {
                 **leaf = LeafSurface::new(std::mem::take(&mut leaf.surfels), thin);
             }
-            if let Some(leaf) = self.surface.edges[id.index()].get_mut() {
+            if let Some(leaf) = self.surface.edges.get_mut(id.index()) {
                 leaf.enclose(thin);
             }
         }

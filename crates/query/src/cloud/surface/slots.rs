@@ -7,6 +7,7 @@ use cloudtouch_geom::Covariance;
 
 use super::edges::LeafEdges;
 use super::leaf::LeafSurface;
+use super::room::Room;
 use super::surfel::{End, Surfel};
 
 /// Neighbours of a point that may be joined to it.
@@ -65,6 +66,14 @@ impl Basis {
         if self.beside.is_some() { End::Open } else { End::Nowhere }
     }
 
+    /// The same but for what is left of the piece where it ends, of which its leaf has a copy.
+    pub(super) fn without_left(mut self) -> Self {
+        if let Some(beside) = &mut self.beside {
+            beside.left.take();
+        }
+        self
+    }
+
     /// The same where pieces have other numbers, and those about this one may have other fits.
     pub(in crate::cloud) fn renumbered(&self, after: &[u32]) -> Self {
         let now = |index: &u32| after[*index as usize];
@@ -81,15 +90,15 @@ impl Basis {
 #[derive(Debug)]
 pub(in crate::cloud) struct LazySurface {
     /// None once all leaves hold what is told of theirs.
-    pub fits: Vec<OnceLock<Box<Fitted>>>,
+    pub fits: Room<Box<Fitted>>,
     /// Of each what it rests on, once all leaves hold theirs.
     pub bases: Vec<Basis>,
-    pub leaves: Vec<OnceLock<Box<LeafSurface>>>,
+    pub leaves: Room<Box<LeafSurface>>,
     /// Of leaves with what they share, for those who ask for that.
-    pub shared: OnceLock<Vec<OnceLock<Vec<Surfel>>>>,
-    pub edges: Vec<OnceLock<Box<LeafEdges>>>,
-    /// What the spacing of each of them is limited to, m.
-    pub spacing_caps: Vec<f64>,
+    pub shared: OnceLock<Room<Vec<Surfel>>>,
+    pub edges: Room<Box<LeafEdges>>,
+    /// What the spacing of each piece is limited to, m.
+    pub spacing_caps: Vec<f32>,
     /// The tree fitted to all of it, made when a query first comes by most of it; `None` where it cannot
     /// be.
     pub fitted: OnceLock<Option<Box<Tree>>>,
@@ -97,13 +106,13 @@ pub(in crate::cloud) struct LazySurface {
 
 impl LazySurface {
     /// For a tree with pieces of these limits.
-    pub(in crate::cloud) fn new(tree: &Tree, spacing_caps: Vec<f64>) -> Self {
+    pub(in crate::cloud) fn new(tree: &Tree, spacing_caps: Vec<f32>) -> Self {
         Self {
-            fits: slots(spacing_caps.len()),
+            fits: Room::new(spacing_caps.len()),
             bases: Vec::new(),
-            leaves: slots(tree.node_slots()),
+            leaves: Room::new(tree.node_slots()),
             shared: OnceLock::new(),
-            edges: slots(tree.node_slots()),
+            edges: Room::new(tree.node_slots()),
             spacing_caps,
             fitted: OnceLock::new(),
         }
@@ -112,11 +121,11 @@ impl LazySurface {
     /// Of no pieces.
     pub(in crate::cloud) fn empty() -> Self {
         Self {
-            fits: Vec::new(),
+            fits: Room::default(),
             bases: Vec::new(),
-            leaves: Vec::new(),
+            leaves: Room::default(),
             shared: OnceLock::new(),
-            edges: Vec::new(),
+            edges: Room::default(),
             spacing_caps: Vec::new(),
             fitted: OnceLock::new(),
         }
@@ -124,25 +133,32 @@ impl LazySurface {
 
     /// What the surface at a piece rests on, where it was computed.
     pub(in crate::cloud) fn basis(&self, piece: u32) -> Option<&Basis> {
-        match self.fits.get(piece as usize) {
-            Some(slot) => slot.get().map(|fitted| &fitted.basis),
-            None => self.bases.get(piece as usize),
+        match self.fits.is_empty() {
+            false => self.fits.get(piece as usize).map(|fitted| &fitted.basis),
+            true => self.bases.get(piece as usize),
         }
     }
 
     /// What the spacing of each point of a leaf is limited to, m.
     pub(in crate::cloud) fn spacing_cap(&self, leaf: Node<'_>) -> f64 {
-        leaf.primitive_indices().first().map_or(0.0, |&index| self.spacing_caps[index as usize])
+        leaf.primitive_indices().first().map_or(0.0, |&piece| self.cap(piece))
+    }
+
+    /// What the spacing of a piece is limited to, m.
+    pub(in crate::cloud) fn cap(&self, piece: u32) -> f64 {
+        self.spacing_caps[piece as usize].into()
+    }
+
+    /// How many pieces there are.
+    pub(in crate::cloud) fn piece_count(&self) -> usize {
+        self.spacing_caps.len()
     }
 }
 
-pub(in crate::cloud) fn slots<T>(count: usize) -> Vec<OnceLock<T>> {
-    (0..count).map(|_| OnceLock::new()).collect()
-}
-
 /// The spacing a point of a leaf may be given at most, on which the tree's bounds rest: somewhat more than that of as
-/// many points on a grid from end to end of the two longest sides of the region's box, or on a line.
-pub(in crate::cloud) fn spacing_cap(tree: &Tree, leaf: Node<'_>) -> f64 {
+/// many points on a grid from end to end of the two longest sides of the region's box, or on a line. No more than an
+/// estimate, it is kept in single precision.
+pub(in crate::cloud) fn spacing_cap(tree: &Tree, leaf: Node<'_>) -> f32 {
     let around = region(tree, leaf);
     let mut sides: [f64; 3] = (2.0 * around.obb().half_extents).into();
     sides.sort_by(f64::total_cmp);
@@ -151,7 +167,7 @@ pub(in crate::cloud) fn spacing_cap(tree: &Tree, leaf: Node<'_>) -> f64 {
     // From end to end there is a step less than points. Of fewer, chance tells more than how many there are.
     let steps = count.max(LEAST_COUNTED).sqrt() - 1.0;
     // On a line the sixth neighbour, which the spacing is measured by, is three steps away.
-    (GRID_STEPS * (longest * middle).sqrt() / steps).max(LINE_STEPS * longest / count)
+    (GRID_STEPS * (longest * middle).sqrt() / steps).max(LINE_STEPS * longest / count) as f32
 }
 
 /// The largest node around a leaf with few enough points to tell their spacing there.
