@@ -54,6 +54,42 @@ fn nothing_that_reaches_into_the_floor_between_two_rings_is_free() {
     assert!(above > 90, "{above}");
 }
 
+/// What a scanner sees that turns no farther than this to either side, rad.
+fn sector(of: &PointCloud, to_side: f64) -> PointCloud {
+    let (width, height) = of.image_size.unwrap_or_default();
+    let round = |column: usize| std::f64::consts::TAU * column as f64 / width as f64;
+    let is_in = |column: &usize| round(*column).cos() > to_side.cos();
+    // From right to left: what is right of straight ahead comes last in a full turn.
+    let columns = (width / 2..width).chain(0..width / 2).filter(is_in).collect::<Vec<_>>();
+    let rows = (0..height).flat_map(|row| columns.iter().map(move |column| row * width + column));
+    let points = rows.map(|pixel| of.points[pixel]).collect();
+    PointCloud { points, image_size: Some((columns.len(), height)), ..of.clone() }
+}
+
+/// All that it measured was ahead, as of a camera, and what is between two rings counted as seen; with `lidar` stated,
+/// nothing beside it was free.
+#[test]
+fn a_scanner_that_looks_ahead_sees_no_more_between_its_rings() {
+    let held = mesh(&scene::cuboid([0.2; 3]));
+    let query = Query::new(QuerySettings::default()).unwrap();
+    for to_side in [0.4, 0.8, 1.3] {
+        let scan = sector(&frame(0.0), to_side);
+        for settings in [settings(), CloudSettings::new(SensorModel::Isotropic { std: 0.01 })] {
+            let cloud = Cloud::prepare(&scan, &settings).unwrap();
+            let free = |depth: f64| {
+                let verdict = |k: u64| {
+                    let (far, round) = (5.7 + 2.0 * uniform(k, 0), 0.5 * uniform(k, 1) - 0.25);
+                    let pose = at(far * round.cos(), far * round.sin(), 0.1 - depth);
+                    query.run(&cloud, &held, &pose).unwrap().verdict
+                };
+                (0..60).filter(|&k| verdict(k) == Verdict::Free).count()
+            };
+            let told = [0.04, -0.1].map(free);
+            assert!(told[0] == 0 && told[1] >= 55, "{to_side}: {told:?}");
+        }
+    }
+}
+
 /// A scanner that creeps over a floor: each ring took for measured again what the ring before it had measured up to the
 /// mean of the steps along and across rings aside, and floor that was swept over was lost.
 #[test]

@@ -1,6 +1,7 @@
 //! What a cloud is like as a whole: what queries look at before they believe it.
 
 pub(super) mod clumps;
+pub(super) mod layout;
 mod panorama;
 mod pinhole;
 pub(super) mod scatter;
@@ -12,6 +13,7 @@ use cloudtouch_geom::{Point3, PointCloud, Vector3};
 use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_of_spacings};
 
 use crate::cloud::makeup::clumps::{Clumps, clumps};
+use crate::cloud::makeup::layout::Layout;
 use crate::cloud::makeup::scatter::Flattest;
 use crate::cloud::makeup::spread::{SAMPLE, Sample};
 use crate::filter::StageReport;
@@ -165,17 +167,17 @@ fn is_line(points: &[Point3]) -> bool {
     points.iter().all(|p| (p - end).cross(&along).norm() <= LINE_SHARE * length)
 }
 
-/// Whether the sensor can have seen the points that were kept of a scan.
+/// Whether the sensor can have seen the points that were kept of a scan, given the layout of one that is an image.
 pub(super) fn sensor_doubts(
     cloud: &PointCloud,
     sensor: &SensorModel,
     points: &[Point3],
+    layout: Option<Layout>,
 ) -> Vec<SensorDoubt> {
     let place = cloud.sensor_origin();
     let rays = || points.iter().map(|p| p - place);
     let mut doubts = Vec::new();
     let is_camera = sensor.is_camera();
-    let is_panorama = !is_camera && cloud.is_image() && !is_ahead(rays());
     match sensor {
         _ if is_camera => {
             let share = |axis: Vector3| {
@@ -196,17 +198,15 @@ pub(super) fn sensor_doubts(
                 doubts.push(SensorDoubt::NoImage);
             }
         }
-        SensorModel::Lidar { .. } if cloud.is_image() && !is_panorama => {
+        SensorModel::Lidar { .. } if layout.is_some_and(|layout| layout.is_camera()) => {
             doubts.push(SensorDoubt::Layout);
         }
         _ => {}
     }
     // What lies beside where a camera looks is doubted by that already.
-    if cloud.is_image() && !doubts.iter().any(|of| matches!(of, SensorDoubt::Beside { .. })) {
-        let is_misplaced = if is_panorama { panorama::is_misplaced } else { pinhole::is_misplaced };
-        if is_misplaced(cloud, &place) {
-            doubts.push(SensorDoubt::Misplaced);
-        }
+    let is_beside = doubts.iter().any(|of| matches!(of, SensorDoubt::Beside { .. }));
+    if layout.is_some_and(|layout| layout.is_misplaced) && !is_beside {
+        doubts.push(SensorDoubt::Misplaced);
     }
     if *sensor == SensorModel::Kinect {
         let some = some_of(points.len(), SAMPLE).map(|index| (points[index] - place).norm());
@@ -216,11 +216,4 @@ pub(super) fn sensor_doubts(
         }
     }
     doubts
-}
-
-/// Whether all of these lie ahead of a sensor, wherever it looks, as those of a camera do.
-fn is_ahead(mut rays: impl Iterator<Item = Vector3> + Clone) -> bool {
-    let forward = rays.clone().filter_map(|ray| ray.try_normalize(0.0)).sum::<Vector3>();
-    let forward = forward.try_normalize(0.0).unwrap_or_else(Vector3::z);
-    rays.all(|ray| ray.dot(&forward) >= BESIDE * ray.norm())
 }

@@ -3,6 +3,7 @@
 use cloudtouch_geom::{Matrix3, Point3, PointCloud, Vector3};
 use nalgebra::SymmetricEigen;
 
+use super::median;
 use crate::filter::is_return_to;
 
 /// Lines that are looked at, at most, and returns of each.
@@ -16,17 +17,32 @@ const OFF: f64 = 0.03;
 /// So large a share of the returns may be: those measured while a scanner moved, and mixed ones.
 const MOST_OFF: f64 = 0.2;
 
-/// Whether no scanner at this place can have taken a panorama, however it stood; `false` too where too little
-/// was measured to tell.
+/// How far the returns of a panorama are from what a scanner at this place sees along its lines, however it stood, as
+/// half of them are (rad); infinite where it cannot have taken it, `None` where too little was measured to tell.
 ///
 /// A scanner that turns about an axis sees along a line of its image a cone about that axis: all around at one
 /// elevation, be that a row or a column. One whose fan of beams nods does so too, about the axis of its
 /// nodding. From another place what is near leaves the cone of what is far.
-pub(super) fn is_misplaced(image: &PointCloud, place: &Point3) -> bool {
-    let Some((width, height)) = image.image_size else { return false };
+pub(super) fn misfit(image: &PointCloud, place: &Point3) -> Option<f64> {
+    Some(fit(image, place)?.misfit)
+}
+
+/// How the lines of a panorama fit on cones.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cones {
+    /// As [`misfit`].
+    pub misfit: f64,
+    /// How far apart lines are in the mean, as a difference of cosines.
+    pub apart: f64,
+}
+
+/// Of rows or columns, whichever fit better.
+pub(super) fn fit(image: &PointCloud, place: &Point3) -> Option<Cones> {
+    let (width, height) = image.image_size?;
     let rows = lines(image, place, (height, width), |row, column| row * width + column);
     let columns = lines(image, place, (width, height), |column, row| row * width + column);
-    are_no_cones(&rows) && are_no_cones(&columns)
+    let [rows, columns] = [cones(&rows, height)?, cones(&columns, width)?];
+    Some(if columns.misfit < rows.misfit { columns } else { rows })
 }
 
 /// Unit vectors to the returns of some lines, of `size.0` that have `size.1` pixels each.
@@ -45,24 +61,35 @@ fn lines(
     (0..size.0).step_by(size.0.div_ceil(LINES).max(1)).map(seen).collect()
 }
 
-fn are_no_cones(lines: &[Vec<Vector3>]) -> bool {
+/// Of some of so many lines.
+fn cones(lines: &[Vec<Vector3>], all: usize) -> Option<Cones> {
     let count: usize = lines.iter().map(Vec::len).sum();
     if count < LEAST {
-        return false;
+        return None;
     }
     let off = || lines.iter().flat_map(|line| from_mean(line));
     // Along the axis of the cones the directions of a line differ least.
     let scatter = off().map(|d| d * d.transpose()).sum::<Matrix3>();
-    let Some(eigen) = SymmetricEigen::try_new(scatter, f64::EPSILON, 1000) else { return false };
+    let eigen = SymmetricEigen::try_new(scatter, f64::EPSILON, 1000)?;
     let axis: Vector3 = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into();
-    let is_off = off().filter(|d| d.dot(&axis).abs() > OFF).count();
-    is_off as f64 > MOST_OFF * count as f64
+    let off: Vec<f64> = off().map(|d| d.dot(&axis).abs()).collect();
+    let is_off = off.iter().filter(|off| **off > OFF).count();
+    let is_none = is_off as f64 > MOST_OFF * count as f64;
+    let misfit = if is_none { f64::INFINITY } else { median(off.into_iter()) };
+    let middles = lines.iter().filter(|line| !line.is_empty()).map(|line| mean(line).dot(&axis));
+    let (low, high) = middles
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (at.min(low), at.max(high)));
+    Some(Cones { misfit, apart: (high - low) / all.saturating_sub(1).max(1) as f64 })
 }
 
 /// Of each direction of a line what the mean of the line lacks.
 fn from_mean(line: &[Vector3]) -> impl Iterator<Item = Vector3> + '_ {
-    let mean = line.iter().sum::<Vector3>() / line.len().max(1) as f64;
+    let mean = mean(line);
     line.iter().map(move |direction| direction - mean)
+}
+
+fn mean(line: &[Vector3]) -> Vector3 {
+    line.iter().sum::<Vector3>() / line.len().max(1) as f64
 }
 
 #[cfg(test)]
@@ -112,6 +139,10 @@ mod tests {
         PointCloud { points, ..image.clone() }
     }
 
+    fn is_misplaced(image: &PointCloud, place: &Point3) -> bool {
+        misfit(image, place) == Some(f64::INFINITY)
+    }
+
     #[test]
     fn a_scanner_is_where_it_was_and_nowhere_else() {
         let rings = scan(16, 900, false);
@@ -147,6 +178,6 @@ mod tests {
     #[test]
     fn too_few_returns_tell_nothing() {
         let rings = scan(4, 10, false);
-        assert!(!is_misplaced(&rings, &Point3::new(2.0, 0.0, 0.0)));
+        assert_eq!(misfit(&rings, &Point3::new(2.0, 0.0, 0.0)), None);
     }
 }

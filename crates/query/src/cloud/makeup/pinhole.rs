@@ -3,6 +3,7 @@
 use cloudtouch_geom::{Matrix3, Point3, PointCloud, Vector3};
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 
+use super::median;
 use crate::filter::is_return_to;
 use crate::some::some_of;
 
@@ -22,18 +23,18 @@ const UNLIKE: f64 = 3.0;
 /// A pixel, in halves of the image's width from its middle, and the unit vector to what it measured.
 type Seen = (Vector3, Vector3);
 
-/// Whether no camera at this place can have taken a depth image, wherever it looked; `false` too where too
-/// little was measured to tell.
+/// How far the pixels of a depth image are from where a camera at this place has them, wherever it looked, as half of
+/// them are (rad); infinite where it cannot have taken it, `None` where too little was measured to tell.
 ///
 /// Of a camera the direction of a pixel is M (u, v, 1) with the columns of M for u and v at right angles and
 /// equally long. From another place what is near moves against what is far, and the best M fits badly; if
 /// all is on one plane it fits, but aslant.
-pub(super) fn is_misplaced(image: &PointCloud, place: &Point3) -> bool {
+pub(super) fn misfit(image: &PointCloud, place: &Point3) -> Option<f64> {
     let seen = seen(image, place);
     if seen.len() < LEAST {
-        return false;
+        return None;
     }
-    let Some(camera) = fitted(&seen) else { return false };
+    let camera = fitted(&seen)?;
     let [u, v] = [0, 1].map(|k| Vector3::from(camera.column(k)));
     let (width, height) = (u.norm(), v.norm());
     let is_aslant = u.dot(&v).abs() > ASLANT * width * height;
@@ -46,7 +47,11 @@ pub(super) fn is_misplaced(image: &PointCloud, place: &Point3) -> bool {
             || direction.dot(&towards) <= 0.0
     };
     let off = seen.iter().filter(is_off).count();
-    is_aslant || is_stretched || off as f64 > MOST_OFF * seen.len() as f64
+    if is_aslant || is_stretched || off as f64 > MOST_OFF * seen.len() as f64 {
+        return Some(f64::INFINITY);
+    }
+    let angle = |(pixel, direction): &Seen| direction.angle(&(camera * pixel));
+    Some(median(seen.iter().map(angle)))
 }
 
 fn seen(image: &PointCloud, place: &Point3) -> Vec<Seen> {
@@ -107,6 +112,10 @@ mod tests {
         [vec![&wall], vec![&wall, &block]].map(|all| camera.scan(&all, &Pose::identity(), 5))
     }
 
+    fn is_misplaced(image: &PointCloud, place: &Point3) -> bool {
+        misfit(image, place) == Some(f64::INFINITY)
+    }
+
     #[test]
     fn a_camera_is_where_it_was_and_nowhere_else() {
         let [wall, block] = images();
@@ -148,6 +157,6 @@ mod tests {
         let [image, _] = images();
         let points = image.points[..40].to_vec();
         let few = PointCloud { image_size: Some((8, 5)), ..PointCloud::from_points(points) };
-        assert!(!is_misplaced(&few, &Point3::new(5.0, 0.0, 0.0)));
+        assert_eq!(misfit(&few, &Point3::new(5.0, 0.0, 0.0)), None);
     }
 }

@@ -18,6 +18,7 @@ use crate::filter::{Filtered, StageReport, Taken, filter_and_tell};
 use self::noise::{coarse_step, joined, noise_of, padded};
 use self::others::{beyond_range, other_returns};
 use self::refused::{by_row, check_for_repeats, checked, nothing_left, of_scan};
+use super::makeup::layout::Layout;
 use super::makeup::{SensorDoubt, missing, robot_doubt, sensor_doubts};
 use super::preparation::Preparation;
 use super::view::Image;
@@ -107,17 +108,19 @@ impl Scans {
             (Some(normals), Combination::SurfacePosterior) => Some(checked(normals, row)?),
             _ => None,
         };
-        let mut sensor_doubts = sensor_doubts(scan, by.sensor, &kept.points);
+        let layout = scan.is_image().then(|| Layout::of(scan, by.sensor, &kept.points));
+        let mut sensor_doubts = sensor_doubts(scan, by.sensor, &kept.points, layout);
         sensor_doubts.extend(robot_doubt(&stages));
         let (taken, doubt) = padded(&scan.select(&removed.robot), &kept.points, by)?;
         sensor_doubts.extend(doubt);
         let (mut images, mut ranges) = (Vec::new(), Vec::new());
-        if scan.is_image() {
+        if let Some(Layout { is_scanner, .. }) = layout {
             // A robot that no return came from is elsewhere, and makes nothing known.
             let robot = if removed.robot.is_empty() { Vec::new() } else { by.filter.robot.clone() };
             let beyond = beyond_range(scan, by)?;
             let others = other_returns(scan, &removed, by)?;
-            images.push(Image::of(scan, (&kept, &rows), robot, &beyond, &others));
+            let image = Image::of(scan, (&kept, &rows), robot, &beyond, &others);
+            images.push(Image { is_scanner, ..image });
         } else {
             ranges.push(Range { sensor_origin: scan.sensor_origin(), most: by.filter.max_range });
         }

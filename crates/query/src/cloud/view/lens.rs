@@ -1,6 +1,6 @@
 //! How directions become places of a view.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use cloudtouch_geom::Vector3;
 use nalgebra::UnitQuaternion;
@@ -43,10 +43,10 @@ impl Spot {
 }
 
 impl Lens {
-    /// Of rays and how long they are, m.
+    /// Of rays and how long they are, m, of a sensor that turns or does not, as far as that was told.
     pub(super) fn of<'a>(
         rays: impl Iterator<Item = (&'a Vector3, f64)> + Clone,
-        turn: &UnitQuaternion<f64>,
+        (turn, is_scanner): (&UnitQuaternion<f64>, bool),
     ) -> Option<Self> {
         let rays = || rays.clone().filter(|(_, range)| *range > 0.0);
         let directions = rays().map(|(ray, range)| ray / range);
@@ -54,9 +54,16 @@ impl Lens {
         if rays().any(|(ray, range)| ray.dot(&forward) < PANORAMA * range) {
             return Some(Self::Panorama(turn.inverse()));
         }
+        let ahead = turn.inverse_transform_vector(&forward);
+        if is_scanner {
+            // Of one that looks ahead bearings begin behind it, so that none of what it saw are a turn apart.
+            let to_behind = PI - ahead.y.atan2(ahead.x);
+            let turned = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), to_behind);
+            return Some(Self::Panorama(turned * turn.inverse()));
+        }
         // A camera looks along its z; one whose turn is stated otherwise, as in a frame with x or y forward, still has
         // an axis aside.
-        let local = turn.inverse_transform_vector(&forward).abs();
+        let local = ahead.abs();
         let right = if local.x < local.y.max(local.z) { Vector3::x() } else { Vector3::y() };
         let down = forward.cross(&turn.transform_vector(&right)).normalize();
         Some(Self::Camera([down.cross(&forward), down, forward]))
@@ -105,8 +112,10 @@ mod tests {
                 ray
             };
             let rays = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]].map(ray);
-            let lens =
-                Lens::of(rays.iter().map(|ray| (ray, ray.norm())), &UnitQuaternion::identity());
+            let lens = Lens::of(
+                rays.iter().map(|ray| (ray, ray.norm())),
+                (&UnitQuaternion::identity(), false),
+            );
             let lens = lens.expect("rays with directions");
             for ray in &rays {
                 let at = lens.project(ray).expect("a ray ahead");

@@ -132,7 +132,8 @@ mod tests {
             let pixels = (0..30).flat_map(|row| (0..40).map(move |column| (column, row)));
             let measured = pixels.map(|(c, r)| (Point3::from(ray(c, r) * depth(c)), 0.001));
             let turn = UnitQuaternion::identity();
-            let raster = Raster::new((&Point3::origin(), &turn), measured, &[], [40, 30]).unwrap();
+            let raster =
+                Raster::new((&Point3::origin(), &turn, false), measured, &[], [40, 30]).unwrap();
             for column in 0..40 {
                 let sight = raster.sight(&(ray(column, 14) * 1.5));
                 if column < rim {
