@@ -188,6 +188,10 @@ impl Warning {
                 "are the two exchanged? The scene comes first, and the pose leads from the object into it. \
                  Or is one in another unit than metres?"
             }
+            // Then the object is the image.
+            Self::Unseen { body: Which::A, .. } => {
+                "look from elsewhere, or raise `max_unseen`; a scan of the object alone is given without rows and columns"
+            }
             Self::Unseen { .. } | Self::CloseBehind { .. } => {
                 "look from elsewhere, or raise `max_unseen`"
             }
