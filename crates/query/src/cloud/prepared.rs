@@ -12,9 +12,10 @@ use crate::error::PrepareError;
 use crate::filter::StageReport;
 
 use super::local::{local, origin_for};
+use super::makeup::Makeup;
+use super::makeup::median::median;
 use super::makeup::scatter::{Flattest, Overstated, scatter};
 use super::makeup::spread::{Sample, sample_of};
-use super::makeup::{Makeup, median};
 use super::pieces::Pieces;
 use super::preparation::Preparation;
 use super::primitives::{Weight, leaf_bounds, primitives_of};

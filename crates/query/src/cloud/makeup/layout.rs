@@ -3,8 +3,12 @@
 use cloudtouch_geom::{Point3, PointCloud, Vector3};
 use cloudtouch_noise::SensorModel;
 
-use super::{BESIDE, panorama, pinhole};
+use super::{panorama, pinhole};
 
+/// A camera sees nothing so far off its axis (cosine): 80°.
+pub(super) const BESIDE: f64 = 0.17;
+/// What is so near to the axis of a scanner (cosine) it does not see: 10°.
+const ALONG: f64 = 0.985;
 /// A direction is off where a camera has it in two ways, and off a scanner's line in one: of equal errors half are
 /// larger than so many times as much.
 const TWO_WAYS: f64 = 1.7456;
@@ -66,9 +70,6 @@ fn ahead(mut rays: impl Iterator<Item = Vector3> + Clone) -> Option<Vector3> {
     let forward = forward.try_normalize(0.0).unwrap_or_else(Vector3::z);
     rays.all(|ray| ray.dot(&forward) >= BESIDE * ray.norm()).then_some(forward)
 }
-
-/// What is so near to the axis of a scanner (cosine) it does not see: 10°.
-const ALONG: f64 = 0.985;
 
 #[cfg(test)]
 mod tests {

@@ -2,6 +2,7 @@
 
 pub(super) mod clumps;
 pub(super) mod layout;
+pub(super) mod median;
 mod panorama;
 mod pinhole;
 pub(super) mod scatter;
@@ -13,7 +14,8 @@ use cloudtouch_geom::{Point3, PointCloud, Vector3};
 use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_of_spacings};
 
 use crate::cloud::makeup::clumps::{Clumps, clumps};
-use crate::cloud::makeup::layout::Layout;
+use crate::cloud::makeup::layout::{BESIDE, Layout};
+use crate::cloud::makeup::median::median;
 use crate::cloud::makeup::scatter::Flattest;
 use crate::cloud::makeup::spread::{SAMPLE, Sample};
 use crate::filter::StageReport;
@@ -22,8 +24,6 @@ use crate::some::some_of;
 /// Points are on a line when none is farther from it than this share of its length: single precision
 /// is no better.
 const LINE_SHARE: f64 = 1e-6;
-/// A camera sees nothing so far off its axis (cosine): 80°.
-const BESIDE: f64 = 0.17;
 /// A camera with this share of its points beside or behind it stood elsewhere.
 const MOST_BESIDE: f64 = 0.01;
 /// No sensor has more of its robot before it than this share of what it measures.
@@ -128,13 +128,6 @@ pub(super) fn robot_doubt(stages: &[StageReport]) -> Option<SensorDoubt> {
     } else {
         (share > MOST_ROBOT).then_some(SensorDoubt::Robot { share })
     }
-}
-
-pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    let middle = values.len() / 2;
-    values.sort_unstable_by(f64::total_cmp);
-    values.get(middle).copied().unwrap_or(0.0)
 }
 
 /// Whether a few of the points make a triangle that no line passes so closely, the cloud being of such a size:

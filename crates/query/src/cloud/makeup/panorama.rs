@@ -3,7 +3,7 @@
 use cloudtouch_geom::{Matrix3, Point3, PointCloud, Vector3};
 use nalgebra::SymmetricEigen;
 
-use super::median;
+use super::median::median;
 use crate::filter::is_return_to;
 
 /// Lines that are looked at, at most, and returns of each.

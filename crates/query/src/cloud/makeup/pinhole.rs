@@ -3,7 +3,7 @@
 use cloudtouch_geom::{Matrix3, Point3, PointCloud, Vector3};
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 
-use super::median;
+use super::median::median;
 use crate::filter::is_return_to;
 use crate::some::some_of;
 
