@@ -66,13 +66,13 @@ fn sector(of: &PointCloud, to_side: f64) -> PointCloud {
     PointCloud { points, image_size: Some((columns.len(), height)), ..of.clone() }
 }
 
-/// All that it measured was ahead, as of a camera, and what is between two rings counted as seen; with `lidar` stated,
+/// Where all that it measured is ahead, as of a camera, what is between two rings counted as seen; with `lidar` stated,
 /// nothing beside it was free.
 #[test]
 fn a_scanner_that_looks_ahead_sees_no_more_between_its_rings() {
     let held = mesh(&scene::cuboid([0.2; 3]));
     let query = Query::new(QuerySettings::default()).unwrap();
-    for to_side in [0.4, 0.8, 1.3] {
+    for to_side in [0.4, 0.8, 1.3, 2.2] {
         let scan = sector(&frame(0.0), to_side);
         for settings in [settings(), CloudSettings::new(SensorModel::Isotropic { std: 0.01 })] {
             let cloud = Cloud::prepare(&scan, &settings).unwrap();

@@ -3,12 +3,16 @@
 use cloudtouch_geom::{Point3, PointCloud, Vector3};
 use cloudtouch_noise::SensorModel;
 
+use super::bearing::begin;
+use super::panorama::Cones;
 use super::{panorama, pinhole};
 
 /// A camera sees nothing so far off its axis (cosine): 80°.
 pub(super) const BESIDE: f64 = 0.17;
 /// What is so near to the axis of a scanner (cosine) it does not see: 10°.
 const ALONG: f64 = 0.985;
+/// Cones are about the vertical of a scanner where their axis is no farther off than this (cosine): 18°.
+const UPRIGHT: f64 = 0.95;
 /// A direction is off where a camera has it in two ways, and off a scanner's line in one: of equal errors half are
 /// larger than so many times as much.
 const TWO_WAYS: f64 = 1.7456;
@@ -20,8 +24,9 @@ const MOST_OF_APART: f64 = 0.15;
 /// What the rows and columns of an image tell of its sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::cloud) struct Layout {
-    /// Whether it turned or nodded; else it is a camera's, or of neither.
-    pub is_scanner: bool,
+    /// Of a scanner, the bearing about z in its frame where those of its view begin, rad; `None` of a camera, and of
+    /// neither.
+    pub scanner: Option<f64>,
     /// Whether neither at the place stated for it can have taken it.
     pub is_misplaced: bool,
 }
@@ -29,7 +34,7 @@ pub(in crate::cloud) struct Layout {
 impl Layout {
     /// Whether a camera at the place stated for it can have taken it.
     pub(super) fn is_camera(&self) -> bool {
-        !self.is_scanner && !self.is_misplaced
+        self.scanner.is_none() && !self.is_misplaced
     }
 
     /// Of an image, given the sensor stated for it and the points that were kept. What is not a camera as stated, and has
@@ -42,25 +47,36 @@ impl Layout {
         let place = image.sensor_origin();
         let rays = || points.iter().map(|p| p - place);
         let by_pinhole = || pinhole::misfit(image, &place);
-        let of = |is_scanner, misfit: Option<f64>| Self {
-            is_scanner,
+        let of_camera = |misfit: Option<f64>| Self {
+            scanner: None,
             is_misplaced: misfit == Some(f64::INFINITY),
         };
         if sensor.is_camera() {
-            return of(false, by_pinhole());
+            return of_camera(by_pinhole());
         }
-        let Some(forward) = ahead(rays()) else { return of(true, panorama::misfit(image, &place)) };
+        let cones = panorama::fit(image, &place);
+        let vertical = image.from_sensor().transform_vector(&Vector3::z());
+        let is_upright = |cones: &Cones| cones.axis.dot(&vertical).abs() > UPRIGHT;
+        let Some(forward) = ahead(rays()) else {
+            let begin = cones.filter(is_upright).and_then(|cones| begin(image, &place, &cones));
+            let is_misplaced = cones.is_some_and(|cones| cones.misfit == f64::INFINITY);
+            return Self { scanner: Some(begin.unwrap_or(0.0)), is_misplaced };
+        };
         let camera = by_pinhole();
         // A panorama is told by its bearings, which there are none of along the axis of the scanner.
-        let vertical = image.from_sensor().transform_vector(&Vector3::z());
         let is_along = |ray: Vector3| ray.dot(&vertical).abs() > ALONG * ray.norm();
         if forward.dot(&vertical).abs() > ALONG || rays().any(is_along) {
-            return of(false, camera);
+            return of_camera(camera);
         }
-        let is_scanner = camera.zip(panorama::fit(image, &place)).is_some_and(|(camera, cones)| {
-            cones.misfit <= MOST_OF_APART * cones.apart && TWO_WAYS * cones.misfit < camera
-        });
-        if is_scanner { of(true, None) } else { of(false, camera) }
+        let is_better = |cones: &Cones| {
+            cones.misfit <= MOST_OF_APART * cones.apart
+                && camera.is_some_and(|camera| TWO_WAYS * cones.misfit < camera)
+        };
+        let scanner = cones.filter(is_upright).filter(is_better);
+        match scanner.and_then(|cones| begin(image, &place, &cones)) {
+            Some(begin) => Self { scanner: Some(begin), is_misplaced: false },
+            None => of_camera(camera),
+        }
     }
 }
 
@@ -96,8 +112,8 @@ mod tests {
     }
 
     fn told(image: &PointCloud, sensor: &SensorModel) -> [bool; 2] {
-        let Layout { is_scanner, is_misplaced } = Layout::of(image, sensor, &image.points);
-        [is_scanner, is_misplaced]
+        let Layout { scanner, is_misplaced } = Layout::of(image, sensor, &image.points);
+        [scanner.is_some(), is_misplaced]
     }
 
     #[test]

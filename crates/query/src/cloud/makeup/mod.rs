@@ -1,5 +1,6 @@
 //! What a cloud is like as a whole: what queries look at before they believe it.
 
+mod bearing;
 pub(super) mod clumps;
 pub(super) mod layout;
 pub(super) mod median;

@@ -17,32 +17,34 @@ const OFF: f64 = 0.03;
 /// So large a share of the returns may be: those measured while a scanner moved, and mixed ones.
 const MOST_OFF: f64 = 0.2;
 
-/// How far the returns of a panorama are from what a scanner at this place sees along its lines, however it stood, as
-/// half of them are (rad); infinite where it cannot have taken it, `None` where too little was measured to tell.
+/// How the lines of a panorama fit on cones.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cones {
+    /// How far returns are from what a scanner at the place asked about sees along its lines, however it stood, as half
+    /// of them are (rad); infinite where it cannot have taken the image.
+    pub misfit: f64,
+    /// How far apart lines are in the mean, as a difference of cosines.
+    pub apart: f64,
+    /// Their axis, of either sign.
+    pub axis: Vector3,
+    /// Whether they are the rows of the image, or its columns.
+    pub are_rows: bool,
+}
+
+/// Of rows or columns, whichever fit better; `None` where too little was measured to tell.
 ///
 /// A scanner that turns about an axis sees along a line of its image a cone about that axis: all around at one
 /// elevation, be that a row or a column. One whose fan of beams nods does so too, about the axis of its
 /// nodding. From another place what is near leaves the cone of what is far.
-pub(super) fn misfit(image: &PointCloud, place: &Point3) -> Option<f64> {
-    Some(fit(image, place)?.misfit)
-}
-
-/// How the lines of a panorama fit on cones.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Cones {
-    /// As [`misfit`].
-    pub misfit: f64,
-    /// How far apart lines are in the mean, as a difference of cosines.
-    pub apart: f64,
-}
-
-/// Of rows or columns, whichever fit better.
 pub(super) fn fit(image: &PointCloud, place: &Point3) -> Option<Cones> {
     let (width, height) = image.image_size?;
     let rows = lines(image, place, (height, width), |row, column| row * width + column);
     let columns = lines(image, place, (width, height), |column, row| row * width + column);
     let [rows, columns] = [cones(&rows, height)?, cones(&columns, width)?];
-    Some(if columns.misfit < rows.misfit { columns } else { rows })
+    Some(match columns.misfit < rows.misfit {
+        true => Cones { are_rows: false, ..columns },
+        false => rows,
+    })
 }
 
 /// Unit vectors to the returns of some lines, of `size.0` that have `size.1` pixels each.
@@ -79,7 +81,8 @@ fn cones(lines: &[Vec<Vector3>], all: usize) -> Option<Cones> {
     let middles = lines.iter().filter(|line| !line.is_empty()).map(|line| mean(line).dot(&axis));
     let (low, high) = middles
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (at.min(low), at.max(high)));
-    Some(Cones { misfit, apart: (high - low) / all.saturating_sub(1).max(1) as f64 })
+    let apart = (high - low) / all.saturating_sub(1).max(1) as f64;
+    Some(Cones { misfit, apart, axis, are_rows: true })
 }
 
 /// Of each direction of a line what the mean of the line lacks.
@@ -140,7 +143,7 @@ mod tests {
     }
 
     fn is_misplaced(image: &PointCloud, place: &Point3) -> bool {
-        misfit(image, place) == Some(f64::INFINITY)
+        fit(image, place).is_some_and(|cones| cones.misfit == f64::INFINITY)
     }
 
     #[test]
@@ -178,6 +181,6 @@ mod tests {
     #[test]
     fn too_few_returns_tell_nothing() {
         let rings = scan(4, 10, false);
-        assert_eq!(misfit(&rings, &Point3::new(2.0, 0.0, 0.0)), None);
+        assert!(fit(&rings, &Point3::new(2.0, 0.0, 0.0)).is_none());
     }
 }

@@ -114,13 +114,13 @@ impl Scans {
         let (taken, doubt) = padded(&scan.select(&removed.robot), &kept.points, by)?;
         sensor_doubts.extend(doubt);
         let (mut images, mut ranges) = (Vec::new(), Vec::new());
-        if let Some(Layout { is_scanner, .. }) = layout {
+        if let Some(Layout { scanner, .. }) = layout {
             // A robot that no return came from is elsewhere, and makes nothing known.
             let robot = if removed.robot.is_empty() { Vec::new() } else { by.filter.robot.clone() };
             let beyond = beyond_range(scan, by)?;
             let others = other_returns(scan, &removed, by)?;
             let image = Image::of(scan, (&kept, &rows), robot, &beyond, &others);
-            images.push(Image { is_scanner, ..image });
+            images.push(Image { scanner, ..image });
         } else {
             ranges.push(Range { sensor_origin: scan.sensor_origin(), most: by.filter.max_range });
         }

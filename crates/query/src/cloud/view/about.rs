@@ -82,7 +82,7 @@ mod tests {
         let measured = pixels
             .filter(is_measured)
             .map(|(c, r)| (Point3::from(turn.transform_vector(&(ray(c, r) * depth(c)))), 0.003));
-        Raster::new((&Point3::origin(), &turn, false), measured, &[], [80, 60]).unwrap()
+        Raster::new((&Point3::origin(), &turn, None), measured, &[], [80, 60]).unwrap()
     }
 
     proptest! {

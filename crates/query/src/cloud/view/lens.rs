@@ -1,6 +1,6 @@
 //! How directions become places of a view.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use cloudtouch_geom::Vector3;
 use nalgebra::UnitQuaternion;
@@ -43,27 +43,23 @@ impl Spot {
 }
 
 impl Lens {
-    /// Of rays and how long they are, m, of a sensor that turns or does not, as far as that was told.
+    /// Of rays and how long they are, m, and of a scanner the bearing where those of its view begin, rad.
     pub(super) fn of<'a>(
         rays: impl Iterator<Item = (&'a Vector3, f64)> + Clone,
-        (turn, is_scanner): (&UnitQuaternion<f64>, bool),
+        (turn, scanner): (&UnitQuaternion<f64>, Option<f64>),
     ) -> Option<Self> {
         let rays = || rays.clone().filter(|(_, range)| *range > 0.0);
         let directions = rays().map(|(ray, range)| ray / range);
         let forward = directions.sum::<Vector3>().try_normalize(0.0)?;
-        if rays().any(|(ray, range)| ray.dot(&forward) < PANORAMA * range) {
-            return Some(Self::Panorama(turn.inverse()));
-        }
-        let ahead = turn.inverse_transform_vector(&forward);
-        if is_scanner {
-            // Of one that looks ahead bearings begin behind it, so that none of what it saw are a turn apart.
-            let to_behind = PI - ahead.y.atan2(ahead.x);
-            let turned = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), to_behind);
+        let is_aside = |(ray, range): (&Vector3, f64)| ray.dot(&forward) < PANORAMA * range;
+        if scanner.is_some() || rays().any(is_aside) {
+            let begin = scanner.unwrap_or(0.0);
+            let turned = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -begin);
             return Some(Self::Panorama(turned * turn.inverse()));
         }
         // A camera looks along its z; one whose turn is stated otherwise, as in a frame with x or y forward, still has
         // an axis aside.
-        let local = ahead.abs();
+        let local = turn.inverse_transform_vector(&forward).abs();
         let right = if local.x < local.y.max(local.z) { Vector3::x() } else { Vector3::y() };
         let down = forward.cross(&turn.transform_vector(&right)).normalize();
         Some(Self::Camera([down.cross(&forward), down, forward]))
@@ -114,7 +110,7 @@ mod tests {
             let rays = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]].map(ray);
             let lens = Lens::of(
                 rays.iter().map(|ray| (ray, ray.norm())),
-                (&UnitQuaternion::identity(), false),
+                (&UnitQuaternion::identity(), None),
             );
             let lens = lens.expect("rays with directions");
             for ray in &rays {

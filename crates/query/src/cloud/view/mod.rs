@@ -32,8 +32,8 @@ pub(super) struct Image {
     pub turn: UnitQuaternion<f64>,
     /// Which points are its.
     pub points: Range<usize>,
-    /// Whether its rows and columns are a laser scanner's, though all may lie ahead.
-    pub is_scanner: bool,
+    /// Of a laser scanner, though all may lie ahead, the bearing about z in its frame where those of its view begin, rad.
+    pub scanner: Option<f64>,
     /// How many columns and rows of pixels are where these are, those without return too.
     pub pixels: [usize; 2],
     /// The links of the robot that were taken out of it.
@@ -72,7 +72,7 @@ impl Image {
             sensor_origin: kept.sensor_origin(),
             turn: *kept.from_sensor().rotation(),
             points: 0..rows.len(),
-            is_scanner: false,
+            scanner: None,
             pixels: pixels_about(scan, looked_at).unwrap_or([kept.len(), 1]),
             robot,
             beyond: beyond.iter().map(|(_, ray)| *ray).collect(),
@@ -130,11 +130,11 @@ impl SingleView {
 
     fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
         let raster = self.raster.get_or_init(|| {
-            let Image { sensor_origin, turn, is_scanner, pixels, beyond, .. } = &self.image;
+            let Image { sensor_origin, turn, scanner, pixels, beyond, .. } = &self.image;
             let Image { points: own, others, .. } = &self.image;
             let own = own.clone().map(|index| (points[index], noise[index].std_bound()));
             let others = others.iter().map(|other| (sensor_origin + other.ray, other.std));
-            let sensor = (sensor_origin, turn, *is_scanner);
+            let sensor = (sensor_origin, turn, *scanner);
             Raster::new(sensor, own.chain(others), beyond, *pixels).map(Arc::new)
         });
         raster.as_deref()
@@ -303,7 +303,7 @@ mod tests {
             let turned = Pose::from_translation_rpy(Vector3::zeros(), turn);
             let points: Vec<Point3> = seen.iter().map(|p| turned.transform_point(p)).collect();
             let image = Image {
-                is_scanner: false,
+                scanner: None,
                 sensor_origin: Point3::origin(),
                 turn: *turned.rotation(),
                 points: 0..points.len(),

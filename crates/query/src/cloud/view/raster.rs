@@ -85,7 +85,7 @@ impl Raster {
     /// Cells are as large as pixels are, however many of these have no return: by the returns alone holes
     /// would be the smaller the more of them there are.
     pub(super) fn new(
-        (origin, turn, is_scanner): (&Point3, &UnitQuaternion<f64>, bool),
+        (origin, turn, scanner): (&Point3, &UnitQuaternion<f64>, Option<f64>),
         measured: impl Iterator<Item = (Point3, f64)>,
         beyond: &[Vector3],
         pixels: [usize; 2],
@@ -97,7 +97,7 @@ impl Raster {
         let mut rays: Vec<(Vector3, f64, f64)> = measured.map(ray).collect();
         let returns = rays.len();
         rays.extend(beyond.iter().map(|ray| (*ray, ray.norm(), 0.0)));
-        let lens = Lens::of(rays.iter().map(|(ray, range, _)| (ray, *range)), (turn, is_scanner))?;
+        let lens = Lens::of(rays.iter().map(|(ray, range, _)| (ray, *range)), (turn, scanner))?;
         let place = |(number, (ray, range, clear)): (usize, &(Vector3, f64, f64))| {
             Some((number, [range - clear, range + clear], lens.project(ray)?))
         };
@@ -222,7 +222,7 @@ mod tests {
             (Point3::new(cos * up.cos(), sin * up.cos(), up.sin()) * range, 0.01)
         };
         let turn = UnitQuaternion::identity();
-        Raster::new((&Point3::origin(), &turn, false), (0..360 * 41).map(ray), &[], [360, 41])
+        Raster::new((&Point3::origin(), &turn, None), (0..360 * 41).map(ray), &[], [360, 41])
             .unwrap()
     }
 
@@ -254,7 +254,7 @@ mod tests {
                 (Point3::from(5.0 * ahead), 0.01)
             };
             let (origin, turn) = (Point3::origin(), UnitQuaternion::identity());
-            Raster::new((&origin, &turn, false), (0..1024 * 32).map(ray), &[], [1024, 32]).unwrap()
+            Raster::new((&origin, &turn, None), (0..1024 * 32).map(ray), &[], [1024, 32]).unwrap()
         });
         for raster in &rasters {
             assert_eq!(raster.size, rasters[0].size);

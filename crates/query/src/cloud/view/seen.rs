@@ -133,7 +133,7 @@ mod tests {
             let measured = pixels.map(|(c, r)| (Point3::from(ray(c, r) * depth(c)), 0.001));
             let turn = UnitQuaternion::identity();
             let raster =
-                Raster::new((&Point3::origin(), &turn, false), measured, &[], [40, 30]).unwrap();
+                Raster::new((&Point3::origin(), &turn, None), measured, &[], [40, 30]).unwrap();
             for column in 0..40 {
                 let sight = raster.sight(&(ray(column, 14) * 1.5));
                 if column < rim {
