@@ -54,10 +54,11 @@ impl Layout {
         if sensor.is_camera() {
             return of_camera(by_pinhole());
         }
-        let cones = panorama::fit(image, &place);
+        let by_cones = || panorama::fit(image, &place);
         let vertical = image.from_sensor().transform_vector(&Vector3::z());
         let is_upright = |cones: &Cones| cones.axis.dot(&vertical).abs() > UPRIGHT;
         let Some(forward) = ahead(rays()) else {
+            let cones = by_cones();
             let begin = cones.filter(is_upright).and_then(|cones| begin(image, &place, &cones));
             let is_misplaced = cones.is_some_and(|cones| cones.misfit == f64::INFINITY);
             return Self { scanner: Some(begin.unwrap_or(0.0)), is_misplaced };
@@ -72,7 +73,7 @@ impl Layout {
             cones.misfit <= MOST_OF_APART * cones.apart
                 && camera.is_some_and(|camera| TWO_WAYS * cones.misfit < camera)
         };
-        let scanner = cones.filter(is_upright).filter(is_better);
+        let scanner = by_cones().filter(is_upright).filter(is_better);
         match scanner.and_then(|cones| begin(image, &place, &cones)) {
             Some(begin) => Self { scanner: Some(begin), is_misplaced: false },
             None => of_camera(camera),

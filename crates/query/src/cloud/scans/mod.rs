@@ -119,8 +119,7 @@ impl Scans {
             let robot = if removed.robot.is_empty() { Vec::new() } else { by.filter.robot.clone() };
             let beyond = beyond_range(scan, by)?;
             let others = other_returns(scan, &removed, by)?;
-            let image = Image::of(scan, (&kept, &rows), robot, &beyond, &others);
-            images.push(Image { scanner, ..image });
+            images.push(Image::of((scan, scanner), (&kept, &rows), robot, &beyond, &others));
         } else {
             ranges.push(Range { sensor_origin: scan.sensor_origin(), most: by.filter.max_range });
         }

@@ -56,10 +56,11 @@ pub(super) struct OtherReturn {
 }
 
 impl Image {
-    /// Of an organised cloud, given what was kept of it, from which rows (none of a collision map), the links that were
-    /// taken out, and the rows of what was too far, with their rays, and of others that are no points.
+    /// Of an organised cloud, a scanner's or not ([`Self::scanner`]), given what was kept of it, from which rows (none of a
+    /// collision map), the links that were taken out, and the rows of what was too far, with their rays, and of others
+    /// that are no points.
     pub(super) fn of(
-        scan: &PointCloud,
+        (scan, scanner): (&PointCloud, Option<f64>),
         (kept, rows): (&PointCloud, &[usize]),
         robot: Vec<SelfMesh>,
         beyond: &[(usize, Vector3)],
@@ -72,7 +73,7 @@ impl Image {
             sensor_origin: kept.sensor_origin(),
             turn: *kept.from_sensor().rotation(),
             points: 0..rows.len(),
-            scanner: None,
+            scanner,
             pixels: pixels_about(scan, looked_at).unwrap_or([kept.len(), 1]),
             robot,
             beyond: beyond.iter().map(|(_, ray)| *ray).collect(),
@@ -130,9 +131,9 @@ impl SingleView {
 
     fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
         let raster = self.raster.get_or_init(|| {
-            let Image { sensor_origin, turn, scanner, pixels, beyond, .. } = &self.image;
-            let Image { points: own, others, .. } = &self.image;
-            let own = own.clone().map(|index| (points[index], noise[index].std_bound()));
+            let Image { sensor_origin, turn, scanner, pixels, beyond, others, .. } = &self.image;
+            let own =
+                self.image.points.clone().map(|index| (points[index], noise[index].std_bound()));
             let others = others.iter().map(|other| (sensor_origin + other.ray, other.std));
             let sensor = (sensor_origin, turn, *scanner);
             Raster::new(sensor, own.chain(others), beyond, *pixels).map(Arc::new)
