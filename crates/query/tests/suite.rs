@@ -1,6 +1,7 @@
 //! All tests of this crate's interface, one module a behaviour: one program to link.
 
 mod around;
+mod between_pixels;
 mod bounds;
 mod change;
 mod close_behind;

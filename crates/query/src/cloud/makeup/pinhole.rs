@@ -18,7 +18,7 @@ const MOST_OFF: f64 = 0.2;
 /// A camera's rows and columns are at right angles, to this cosine, ...
 const ASLANT: f64 = 0.2;
 /// ... and of like width, to this factor: columns may have been left out.
-const UNLIKE: f64 = 3.0;
+const UNLIKE: f64 = 3.5;
 
 /// A pixel, in halves of the image's width from its middle, and the unit vector to what it measured.
 type Seen = (Vector3, Vector3);

@@ -3,10 +3,19 @@
 use cloudtouch_geom::Vector3;
 
 use super::raster::Raster;
-use super::seen::HOLE_CELLS;
 
 /// Cells along the edge of a block, of which the one that was seen least far tells.
 const BLOCK: usize = 8;
+
+/// How far was seen.
+#[derive(Debug)]
+pub(super) struct Seen {
+    /// The range of the nearest return of each cell and those around it, m, beyond which a surface may be between returns
+    /// or another image may know one better; infinite without one.
+    pub(super) about: Vec<f64>,
+    /// Up to which range all of a block of cells was seen, m.
+    blocks: Vec<f64>,
+}
 
 impl Raster {
     /// Whether it saw all places no farther than a distance (m) from where a ray leads. It may have where this does not
@@ -14,7 +23,7 @@ impl Raster {
     pub(super) fn sees_about(&self, ray: &Vector3, distance: f64) -> bool {
         let Some([low, high]) = self.blocks_about(ray, distance) else { return false };
         let farthest = ray.norm() + distance;
-        let seen = self.seen.get_or_init(|| self.seen_of_blocks());
+        let seen = &self.seen().blocks;
         let columns = self.size[0].div_ceil(BLOCK);
         (low[1]..=high[1]).all(|y| (low[0]..=high[0]).all(|x| farthest <= seen[y * columns + x]))
     }
@@ -29,30 +38,31 @@ impl Raster {
         Some(corners.map(block))
     }
 
-    /// Up to which range all of a block was seen, m.
-    fn seen_of_blocks(&self) -> Vec<f64> {
+    pub(super) fn seen(&self) -> &Seen {
+        self.seen.get_or_init(|| self.all_seen())
+    }
+
+    fn all_seen(&self) -> Seen {
         let [columns, rows] = self.size;
         let across = columns.div_ceil(BLOCK);
-        let mut seen = vec![f64::INFINITY; across * rows.div_ceil(BLOCK)];
+        let mut seen = Seen {
+            about: Vec::with_capacity(columns * rows),
+            blocks: vec![f64::INFINITY; across * rows.div_ceil(BLOCK)],
+        };
         for (y, x) in (0..rows).flat_map(|y| (0..columns).map(move |x| (y, x))) {
-            let block = &mut seen[y / BLOCK * across + x / BLOCK];
-            *block = block.min(self.seen_of_cell([x as isize, y as isize]));
+            let nearest = self.nearest_about([x as isize, y as isize]);
+            let block = &mut seen.blocks[y / BLOCK * across + x / BLOCK];
+            *block = block.min(if nearest.is_finite() { nearest } else { 0.0 });
+            seen.about.push(nearest);
         }
         seen
     }
 
-    /// The same of a cell: up to its nearest return, or of a speck as far as the farthest around it.
-    fn seen_of_cell(&self, [x, y]: [isize; 2]) -> f64 {
-        let behind = |x: isize, y: isize| {
-            self.index(x, y).map_or(0.0, |cell| self.cells[cell].clearly_behind)
-        };
-        if behind(x, y) > 0.0 {
-            // What is behind it by no more than noise another image may know better.
-            return self.index(x, y).map_or(0.0, |cell| self.cells[cell].nearest());
-        }
-        let ring = || -HOLE_CELLS..=HOLE_CELLS;
-        let around = ring().flat_map(|dy| ring().map(move |dx| [dx, dy]));
-        around.map(|[dx, dy]| behind(x + dx, y + dy)).fold(0.0, f64::max)
+    /// The range of the nearest return of a cell and those around it, m; infinite without one.
+    fn nearest_about(&self, [x, y]: [isize; 2]) -> f64 {
+        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
+        let nearest = |[x, y]: [isize; 2]| Some(self.cells[self.index(x, y)?].nearest());
+        around.filter_map(nearest).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -76,12 +86,13 @@ mod tests {
             (column * 31 + row * 17) % 23 > 1
                 && !((50..60).contains(&column) && (20..26).contains(&row))
         };
-        let depth = |column: usize| {
-            if (20..35).contains(&column) { 1.2 } else { 2.0 + 0.01 * column as f64 }
+        let depth = |column: usize, row: usize| {
+            let aslant = (2.0 + 0.01 * column as f64) / (1.0 + 0.004 * (row as f64 - 47.0));
+            if (20..35).contains(&column) { 1.2 } else { aslant }
         };
         let measured = pixels
             .filter(is_measured)
-            .map(|(c, r)| (Point3::from(turn.transform_vector(&(ray(c, r) * depth(c)))), 0.003));
+            .map(|(c, r)| (Point3::from(turn.transform_vector(&(ray(c, r) * depth(c, r)))), 0.003));
         Raster::new((&Point3::origin(), &turn, None), measured, &[], [80, 60]).unwrap()
     }
 

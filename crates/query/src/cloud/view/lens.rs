@@ -72,6 +72,15 @@ impl Lens {
         }
     }
 
+    /// How far away what a ray of such a range (m) leads to is, m: along the axis of a camera, over which a plane goes
+    /// evenly, or from a scanner.
+    pub(super) fn distance(&self, ray: &Vector3, range: f64) -> f64 {
+        match self {
+            Self::Camera([_, _, forward]) => ray.dot(forward),
+            Self::Panorama(_) => range,
+        }
+    }
+
     /// Where a camera sees what a ray leads to; `None` of what is not ahead, and of a panorama.
     pub(super) fn spot(&self, ray: &Vector3) -> Option<Spot> {
         let Self::Camera([.., forward]) = self else { return None };

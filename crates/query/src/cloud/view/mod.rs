@@ -9,6 +9,7 @@ pub(super) mod range;
 pub(super) mod raster;
 mod robot;
 pub(super) mod seen;
+mod straight;
 
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};

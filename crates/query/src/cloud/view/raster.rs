@@ -9,8 +9,10 @@ use std::sync::OnceLock;
 use cloudtouch_geom::{Point3, Vector3};
 use nalgebra::UnitQuaternion;
 
+use super::about::Seen;
 use super::lens::Lens;
 use super::lines::Lines;
+use super::straight::Mean;
 
 /// Edge of a raster's cell in pixels: no cell between measured pixels is left empty by chance.
 const CELL_PIXELS: f64 = 2.0;
@@ -43,12 +45,14 @@ pub(super) struct Raster {
     pub(super) reach: [isize; 2],
     // PERF: what is told of a cell is looked up at once.
     pub(super) cells: Vec<Cell>,
+    /// The same in the mean.
+    pub(super) means: Vec<Mean>,
     /// Of each cell whether what is farther was left out; empty where nothing was.
     pub(super) is_open: Vec<bool>,
     /// Of a panorama whose lines are farther apart than the pixels of one.
     pub(super) lines: Option<Lines>,
-    /// Up to which range all of a block of cells was seen, m, once that is needed.
-    pub(super) seen: OnceLock<Vec<f64>>,
+    /// How far was seen, once that is needed.
+    pub(super) seen: OnceLock<Seen>,
 }
 
 /// What was met in a cell.
@@ -69,6 +73,11 @@ impl Cell {
     /// The range of the nearest return, m; infinite without one.
     pub(super) fn nearest(&self) -> f64 {
         0.5 * (self.clearly_before + self.behind_nearest)
+    }
+
+    /// How much farther than its nearest return is clearly behind it, m; zero without one.
+    pub(super) fn clear(&self) -> f64 {
+        if self.clearly_behind > 0.0 { self.behind_nearest - self.nearest() } else { 0.0 }
     }
 
     fn add(&mut self, [before, behind]: [f64; 2]) {
@@ -156,13 +165,19 @@ impl Raster {
             is_round,
             reach,
             cells: vec![Cell::EMPTY; count],
+            means: vec![Mean::default(); count],
             is_open,
             lines: (steps[1] > APART * steps[0]).then(|| Lines::new(count, steps[1])),
             seen: OnceLock::new(),
         };
         for (number, [before, behind], at) in placed {
-            if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
+            let place = raster.cell(at).and_then(|at| Some((at, raster.index(at[0], at[1])?)));
+            if let Some((middle, cell)) = place {
                 raster.cells[cell].add([before, behind]);
+                let (ray, range, _) = &rays[number];
+                let distance = raster.lens.distance(ray, *range);
+                let aside = raster.from_middle(at, middle);
+                raster.means[cell].add(aside, distance);
                 if number >= returns {
                     raster.is_open[cell] = true;
                 }
@@ -186,6 +201,11 @@ impl Raster {
             |v: f64, axis: usize| self.is_round && axis == 0 || v >= 0.0 && v < self.span[axis];
         // What is just left of the first column of a round one is in the last.
         (is_within(x, 0) && is_within(y, 1)).then_some([x.floor() as isize, y.floor() as isize])
+    }
+
+    /// Where a place of the view is, from the middle of its cell, in cells.
+    pub(super) fn from_middle(&self, at: [f64; 2], cell: [isize; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.pitch - cell[axis] as f64 - 0.5)
     }
 
     pub(super) fn index(&self, x: isize, y: isize) -> Option<usize> {

@@ -3,10 +3,11 @@
 use cloudtouch_geom::Vector3;
 
 use super::raster::{Cell, Raster};
+use super::straight::Surface;
 
 /// A place is in a hole when nothing was measured so many cells around its own: every hole eight pixels wide has
 /// such places, and smaller ones are specks that hardly a surface hides in.
-pub(super) const HOLE_CELLS: isize = 1;
+const HOLE_CELLS: isize = 1;
 /// A surface recedes across a cell when it did so before it at this part of the rate: of two directions one has half.
 const STEADY: f64 = 0.4;
 /// What is no farther behind a return, m, may be inside the thing it came from: few things on a table are thicker.
@@ -73,6 +74,7 @@ impl Raster {
                     true if self.is_close_behind(range, [x, y]) => Sight::CloseBehind,
                     true => Sight::BehindReturns,
                     false if is_behind_lines() => Sight::BehindReturns,
+                    false if self.is_behind_surface(ray, at, [x, y]) => Sight::BehindReturns,
                     false => Sight::Seen,
                 };
             }
@@ -103,6 +105,26 @@ impl Raster {
     fn is_close_behind(&self, range: f64, [x, y]: [isize; 2]) -> bool {
         let behind = self.index(x, y).map_or(0.0, |cell| self.cells[cell].clearly_behind);
         range > behind && range <= behind + CLOSE
+    }
+
+    /// Whether a place is clearly behind the surface that a cell and those around it are on, where that is even.
+    fn is_behind_surface(&self, ray: &Vector3, at: [f64; 2], [x, y]: [isize; 2]) -> bool {
+        let Some(own) = self.index(x, y) else { return false };
+        let (range, mut clear) = (ray.norm(), self.cells[own].clear());
+        if range <= self.seen().about[own] + clear {
+            return false;
+        }
+        let mut surface = Surface::default();
+        for (dy, dx) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dy, dx))) {
+            if let Some(cell) = self.index(x + dx, y + dy) {
+                clear = clear.max(self.cells[cell].clear());
+                surface.add([dx, dy], self.means[cell]);
+            }
+        }
+        let distance = self.lens.distance(ray, range);
+        surface
+            .distance(clear, self.from_middle(at, [x, y]))
+            .is_some_and(|surface| distance > surface + clear * distance / range)
     }
 
     /// The range clearly behind what two lines of a panorama have between them, where these are next to one another.
