@@ -40,6 +40,28 @@ fn the_readme_shows_what_it_prints() {
     assert_eq!(timeless(shown), timeless(&printed));
 }
 
+/// The table of a batch was of a fit before the last.
+#[test]
+fn the_readme_shows_what_a_batch_prints() {
+    let rows = |text: &str| -> Vec<String> {
+        // Times are of the machine.
+        let row = |line: &str| {
+            let (answer, bodies) = line.split_once(" ms ")?;
+            let (answer, _) = answer.trim_end().rsplit_once(' ')?;
+            let words = answer.split_whitespace().chain(bodies.split_whitespace());
+            Some(words.collect::<Vec<_>>().join(" "))
+        };
+        text.lines().filter(|line| line.starts_with("piano-room-")).filter_map(row).collect()
+    };
+    let readme = include_str!("../README.md");
+    let (_, shown) = readme.split_once("$ cloudtouch batch cases.json\n").unwrap();
+    let (shown, _) = shown.split_once("```").unwrap();
+    let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/piano-room/cases.json");
+    let printed = Inputs::new().run(&["batch", cases]).quiet(0).stdout();
+    assert_eq!(rows(shown), rows(&printed));
+    assert_eq!(rows(shown).len(), 12);
+}
+
 #[test]
 fn paints_the_pose_it_shows() {
     let inputs = Inputs::new();

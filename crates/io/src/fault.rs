@@ -11,7 +11,6 @@ use crate::depth_camera::CameraError;
 
 /// Why some bytes are not a file of their format.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{place}: {fault}")]
 pub struct FormatError {
     /// Where in the file.
     pub place: Place,
@@ -19,9 +18,20 @@ pub struct FormatError {
     pub fault: Fault,
 }
 
+impl fmt::Display for FormatError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.place {
+            Place::Whole => self.fault.fmt(f),
+            place => write!(f, "{place}: {}", self.fault),
+        }
+    }
+}
+
 /// A place in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
+    /// Nowhere more than elsewhere.
+    Whole,
     /// A line of text, from 1.
     Line(usize),
     /// A value in a line of text.
@@ -38,6 +48,7 @@ pub enum Place {
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Whole => write!(f, "the file"),
             Self::Line(line) => write!(f, "line {line}"),
             Self::Column { line, column } => write!(f, "line {line}, column {column}"),
             Self::Byte(byte) => write!(f, "byte {byte}"),

@@ -3,6 +3,7 @@
 
 mod atomic;
 mod builder;
+mod camera_doubt;
 mod column_names;
 mod conversion;
 pub mod depth;
@@ -31,6 +32,7 @@ pub use cloudtouch_geom as geom;
 
 pub use atomic::{abandon_unfinished, write_atomically};
 pub use depth::is_depth_image;
+pub use camera_doubt::CameraDoubt;
 pub use depth_camera::{CameraError, DepthCamera};
 pub use error::{ReadError, WriteError};
 pub use fault::{Fault, FormatError, Place};

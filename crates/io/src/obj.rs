@@ -62,7 +62,7 @@ pub fn parse(bytes: &[u8]) -> Result<TriangleMesh, FormatError> {
 /// As [`parse`].
 pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, FormatError> {
     if bytes.is_empty() {
-        return Err(Place::Byte(0).error(Fault::Empty));
+        return Err(Place::Whole.error(Fault::Empty));
     }
     let mut lines = Lines::new(bytes);
     let mut vertices: Vec<Point3> = Vec::new();

@@ -40,7 +40,7 @@ pub fn parse(bytes: &[u8]) -> Result<TriangleMesh, FormatError> {
 /// As [`parse`].
 pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, FormatError> {
     if bytes.is_empty() {
-        return Err(Place::Byte(0).error(Fault::Empty));
+        return Err(Place::Whole.error(Fault::Empty));
     }
     if let Some(other) = OTHERS.iter().find(|other| bytes.starts_with(other)) {
         let found = String::from_utf8_lossy(other.trim_ascii_end()).into_owned();
@@ -52,12 +52,12 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
         ascii_corners(bytes, limits)?
     };
     let Ok(count) = u32::try_from(corners.len()) else {
-        return Err(Place::Byte(0).error(Fault::TooManyVertices { found: corners.len() }));
+        return Err(Place::Whole.error(Fault::TooManyVertices { found: corners.len() }));
     };
     let triangles = (0..count / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     TriangleMesh::new(corners, triangles)
         // Coordinates were checked where they stand; no triangles are all that is left.
-        .map_err(|_| Place::Byte(0).error(Fault::NoTriangles))
+        .map_err(|_| Place::Whole.error(Fault::NoTriangles))
 }
 
 /// A binary file has control characters in its first kilobyte, if only a zero byte of its count. So

@@ -85,7 +85,7 @@ fn faults_are_named_by_line_and_column() {
     let face = |face: &str| error(VERTICES.to_owned() + face);
     let column = |line, column| Place::Column { line, column };
     let missing = |found: &str| Fault::MissingVertex { found: found.into(), vertices: 4 };
-    assert_eq!(error(""), (Place::Byte(0), Fault::Empty));
+    assert_eq!(error(""), (Place::Whole, Fault::Empty));
     assert_eq!(face("f 1 2 3\nf 1 2 5\nf 1 2 4"), (column(6, 3), missing("5")));
     assert_eq!(face("f 1 0 2"), (column(5, 2), missing("0")));
     assert_eq!(face("f 1 -5 2"), (column(5, 2), missing("-5")));

@@ -262,7 +262,7 @@ fn bad_headers_are_named_by_line() {
 
 #[test]
 fn files_of_another_kind_and_empty_files_are_refused() {
-    assert_eq!(error(b""), (Place::Byte(0), Fault::Empty));
+    assert_eq!(error(b""), (Place::Whole, Fault::Empty));
     let (place, fault) = error(b"ply\nformat ascii 1.0\n");
     assert_eq!(place, Place::Line(1));
     assert!(matches!(fault, Fault::WrongMagic { found, .. } if found == "ply"));

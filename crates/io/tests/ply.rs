@@ -97,7 +97,7 @@ fn covariance_properties_are_read_and_checked() {
 
 #[test]
 fn bad_headers_are_named_by_line() {
-    assert_eq!(error(""), (Place::Byte(0), Fault::Empty));
+    assert_eq!(error(""), (Place::Whole, Fault::Empty));
     assert!(matches!(error("solid a\n"), (Place::Line(1), Fault::WrongMagic { .. })));
     assert!(matches!(
         error("ply\nformat ascii 1.0\n"),

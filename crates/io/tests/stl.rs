@@ -76,7 +76,7 @@ fn binary_files_must_hold_what_they_count() {
     few[80] = 3;
     assert_eq!(error(few), (Place::Byte(234), Fault::Leftover { promised: 3 }));
     assert_eq!(stl::parse(&[&whole[..], &[0; 60]].concat()).unwrap().triangles().len(), 4);
-    assert_eq!(error(binary("", &[])), (Place::Byte(0), Fault::NoTriangles));
+    assert_eq!(error(binary("", &[])), (Place::Whole, Fault::NoTriangles));
     let mut bad = TETRAHEDRON;
     bad[2][4] = f32::NEG_INFINITY;
     assert_eq!(
@@ -87,7 +87,7 @@ fn binary_files_must_hold_what_they_count() {
 
 #[test]
 fn ascii_faults_are_named_by_line() {
-    assert_eq!(error(""), (Place::Byte(0), Fault::Empty));
+    assert_eq!(error(""), (Place::Whole, Fault::Empty));
     let column = |line, column| Place::Column { line, column };
     let with = |line: usize, to: &str| {
         let text = ascii();
@@ -109,7 +109,7 @@ fn ascii_faults_are_named_by_line() {
     assert_eq!(with(5, "vertex 1 2"), (Place::Line(5), short));
     assert_eq!(with(5, ""), (Place::Line(8), Fault::Corners { found: 2, expected: "3" }));
     assert!(matches!(with(30, ""), (Place::Line(29), Fault::UnexpectedEnd { .. })));
-    assert_eq!(error("solid\nendsolid\n"), (Place::Byte(0), Fault::NoTriangles));
+    assert_eq!(error("solid\nendsolid\n"), (Place::Whole, Fault::NoTriangles));
     assert!(matches!(error("solid\nendsolid\nsolid\n").1, Fault::UnexpectedEnd { .. }));
 }
 

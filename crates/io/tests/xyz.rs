@@ -135,8 +135,8 @@ fn a_count_before_the_points_is_told_as_such() {
 fn faults_are_named_by_line_and_column() {
     let not_a_number = |found: &str| Fault::NotANumber { found: found.into() };
     let column = |line, column| Place::Column { line, column };
-    assert_eq!(error(""), (Place::Byte(0), Fault::Empty));
-    assert_eq!(error("# nothing\n\n"), (Place::Byte(0), Fault::Empty));
+    assert_eq!(error(""), (Place::Whole, Fault::Empty));
+    assert_eq!(error("# nothing\n\n"), (Place::Whole, Fault::Empty));
     assert_eq!(error("1 2 3\n# c\n1 two 3\n"), (column(3, 2), not_a_number("two")));
     // A decimal comma must not turn three numbers into six.
     assert_eq!(error("1,5;2,5;3,5\n").0, Place::Line(1));

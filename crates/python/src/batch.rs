@@ -4,7 +4,7 @@
 //! while they are in its cache, and not kept for all poses.
 
 use cloudtouch::geom::Vector3;
-use cloudtouch::{Report, Undecided};
+use cloudtouch::{Report, Undecided, Warning};
 use numpy::{Element, IntoPyArray, PyArray1, PyFixedUnicode};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,6 +31,7 @@ pub(crate) struct Row {
     contact_normal: Vector3,
     contact_count: usize,
     warning_count: usize,
+    warnings: String,
     seconds: f64,
     error: String,
 }
@@ -56,6 +57,7 @@ impl From<&Report> for Row {
             contact_normal: contact.map_or(nowhere, |c| c.normal_a_to_b),
             contact_count: report.contacts.len(),
             warning_count: report.warnings.len(),
+            warnings: codes(report),
             seconds: seconds(report),
             error: String::new(),
         }
@@ -80,10 +82,17 @@ impl Row {
             contact_normal: Vector3::repeat(f64::NAN),
             contact_count: 0,
             warning_count: 0,
+            warnings: String::new(),
             seconds: 0.0,
             error,
         }
     }
+}
+
+/// The codes of all warnings, in their order.
+fn codes(report: &Report) -> String {
+    let codes: Vec<&str> = report.warnings.iter().map(Warning::code).collect();
+    codes.join(",")
 }
 
 /// The columns by their names in Python.
@@ -106,6 +115,8 @@ pub(crate) fn columns<'py>(py: Python<'py>, rows: &[Row]) -> PyResult<Bound<'py,
     columns.set_item("contact_normal", normals.into_pyarray(py))?;
     columns.set_item("contact_count", column(py, rows, |row| row.contact_count as i64))?;
     columns.set_item("warning_count", column(py, rows, |row| row.warning_count as i64))?;
+    let warnings: Vec<&str> = rows.iter().map(|row| row.warnings.as_str()).collect();
+    columns.set_item("warnings", warnings)?;
     columns.set_item("seconds", column(py, rows, |row| row.seconds))?;
     let errors: Vec<&str> = rows.iter().map(|row| row.error.as_str()).collect();
     columns.set_item("error", errors)?;

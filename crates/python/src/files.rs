@@ -48,18 +48,19 @@ fn matrices(covariances: &[Covariance]) -> Array3<f64> {
     Array3::from_shape_fn((all.len(), 3, 3), |(i, row, column)| all[i][(row, column)])
 }
 
-/// Refuses what is no camera of an image of so many columns and rows.
+/// Refuses what is no camera of an image of so many columns and rows, and tells what may be another's.
 #[pyfunction]
 #[pyo3(signature = (intrinsics, depth_scale, image_size, /))]
 pub(crate) fn check_camera(
     intrinsics: [f64; 4],
     depth_scale: f64,
     image_size: (usize, usize),
-) -> PyResult<()> {
+) -> PyResult<Option<String>> {
     let [fx, fy, cx, cy] = intrinsics;
     let camera = DepthCamera { depth_scale, ..DepthCamera::new(fx, fy, cx, cy) };
     let (width, height) = image_size;
-    camera.validate_for(width, height).map_err(refused)
+    camera.validate_for(width, height).map_err(refused)?;
+    Ok(camera.doubt_for(width, height).map(|doubt| doubt.to_string()))
 }
 
 /// Vertices and triangles of a file, in metres.

@@ -239,6 +239,19 @@ impl Query {
         columns(py, &rows)
     }
 
+    #[pyo3(signature = (a, b, pose, /))]
+    fn is_free(
+        &self,
+        py: Python<'_>,
+        a: &Bound<'_, Body>,
+        b: &Bound<'_, Body>,
+        pose: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<bool> {
+        let (a, b) = (a.get().now(py)?, b.get().now(py)?);
+        let pose = rigid("pose", &matrix(&pose))?;
+        on_this_thread(py, || self.checked.is_free(&*a, &*b, &pose))?.map_err(refused)
+    }
+
     #[pyo3(signature = (a, b, poses, /))]
     fn are_free<'py>(
         &self,

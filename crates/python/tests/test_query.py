@@ -209,8 +209,24 @@ def test_what_is_printed_is_worth_reading(table, parcel, floor):
     touching = repr(ct.Query().run(table, parcel, lifted(0.05)))
     assert "in_collision, P = " in touching and " mm" in touching and "contact" in touching
     assert "warning: " in repr(ct.Query().run(table, parcel, lifted(500.0)))
-    batch = ct.Query().run_batch(table, parcel, [lifted(0.2), lifted(0.3), lifted(0.02)])
-    assert repr(batch) == "<Batch: 3 poses: 2 free, 1 in_collision>"
+    batch = ct.Query().run_batch(table, parcel, [lifted(0.1), lifted(0.6), lifted(0.02)])
+    assert repr(batch) == "<Batch: 3 poses: 2 free, 1 in_collision; warnings: 1 outside_scene>"
+    assert batch.warnings.tolist() == ["", "outside_scene", ""]
+
+
+def test_poses_in_millimetres_were_free(table, parcel):
+    """Of poses 30 to 300 mm above a table of 70 cm all read as free, and nothing in a batch said why."""
+    poses = [lifted(mm) for mm in range(30, 300, 10)]
+    batch = ct.Query().run_batch(table, parcel, poses)
+    assert set(batch.verdict) == {"undecided"} and set(batch.warnings) == {"far_away"}
+    assert not ct.Query().are_free(table, parcel, poses).any()
+
+
+def test_one_pose_is_free_where_its_verdict_is(table, parcel):
+    query = ct.Query()
+    for height in (0.02, 0.06, 0.1, 200.0):
+        free = query.is_free(table, parcel, lifted(height))
+        assert free is (query.run(table, parcel, lifted(height)).verdict == "free")
 
 
 def test_refining_changes_no_probability(parcel, table):

@@ -258,6 +258,29 @@ fn a_size_that_only_the_smaller_of_two_is_doubted_for_counts_too() {
     assert_eq!((names(&found), by), (vec![["a hall", "b house"]], Some(Undecided::Units)));
 }
 
+/// A gripper in millimetres was the larger body, and so the surroundings of what the camera saw, in which it was free.
+#[test]
+fn a_mesh_in_millimetres_beside_a_scan_was_taken_for_its_surroundings() {
+    let mut scene = Scene::default();
+    let table = PointCloud::from_points(measured(&scene::plane_patch(1.0), 0.02, 0.002, 1));
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
+    scene.add("scan", Cloud::prepare(&table, &settings).unwrap(), Pose::identity()).unwrap();
+    scene.add("cup", mesh(&scene::cuboid([0.1; 3])), at(0.0, 0.0, 0.3)).unwrap();
+    // One beside it, and one about it.
+    for (z, size) in [(200.0, [40.0, 80.0, 60.0]), (0.0, [40.0, 80.0, 60.0])] {
+        let mut scene = scene.clone();
+        scene.add("gripper", mesh(&scene::cuboid(size)), at(0.0, 0.0, z)).unwrap();
+        let found = assert_same(&scene, &query());
+        let of_scan = found.pairs.iter().find(|pair| [&pair.a, &pair.b].contains(&&"scan".into()));
+        let by = of_scan.and_then(|pair| pair.answer.as_ref().ok()?.undecided_by);
+        assert_eq!(by, Some(Undecided::Units), "{found:?}");
+        assert!(!scene.is_free(&query()));
+    }
+    // What the floor of a hall is.
+    scene.add("floor", mesh(&scene::cuboid([60.0, 60.0, 0.1])), at(0.0, 0.0, -1.0)).unwrap();
+    assert_eq!(assert_same(&scene, &query()).verdict(), Verdict::Free);
+}
+
 #[test]
 fn what_is_wrong_with_a_body_itself_counts_however_far_away_it_is() {
     let mut scene = Scene::default();

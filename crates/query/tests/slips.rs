@@ -105,9 +105,11 @@ fn a_pose_in_millimetres_read_free() {
     let told = |w: &Warning| matches!(w, Warning::FarAway { .. });
     let in_mm = at(100.0, 200.0, 300.0);
     check(|mode| scan(&table(), mode), &mesh(&tool()), &in_mm, Undecided::Units, told);
-    // In metres 6 cm above it.
-    let just_above = at(0.0, 0.0, 60.0);
-    check(|mode| scan(&table(), mode), &mesh(&tool()), &just_above, Undecided::Units, told);
+    // In metres 6 cm above it, and 25 mm.
+    for just_above in [60.0, 25.0] {
+        let just_above = at(0.0, 0.0, just_above);
+        check(|mode| scan(&table(), mode), &mesh(&tool()), &just_above, Undecided::Units, told);
+    }
     // Two metres beside the table nothing is in the way, and the report says so.
     let beside = ask(
         Mode::Calibrated,
@@ -214,6 +216,19 @@ fn a_cloud_with_every_third_row_missing_read_free() {
     cloud.points.iter_mut().step_by(3).for_each(|p| p.x = f64::NAN);
     let told = |w: &Warning| matches!(w, Warning::Missing { share, .. } if *share > 0.3);
     check(|mode| scan(&cloud, mode), &mesh(&tool()), &at(0.1, 0.2, 0.3), Undecided::Missing, told);
+}
+
+/// As some drivers write them.
+#[test]
+fn missing_rows_of_zeros_read_free() {
+    let mut cloud = table();
+    cloud.points.iter_mut().step_by(3).for_each(|p| *p = Point3::origin());
+    let told = |w: &Warning| matches!(w, Warning::Missing { share, .. } if *share > 0.3);
+    check(|mode| scan(&cloud, mode), &mesh(&tool()), &at(0.1, 0.2, 0.3), Undecided::Missing, told);
+    // One row there may be a point, and so may two.
+    let mut cloud = table();
+    cloud.points[..2].fill(Point3::origin());
+    assert_eq!(scan(&cloud, Mode::Calibrated).len(), table().len() - 1);
 }
 
 #[test]

@@ -271,7 +271,9 @@ impl Robot {
 
 /// Meshes in millimetres, or scaled twice.
 fn check_sizes(tree: &Tree, shapes: &[Shape]) -> Result<(), RobotFault> {
-    let reach: f64 = tree.joints.iter().map(|joint| joint.origin.translation().norm()).sum();
+    let lengths = tree.joints.iter().map(|joint| joint.origin.translation().norm());
+    // The sum of none is -0.
+    let reach = lengths.fold(0.0, |sum, length| sum + length);
     for shape in shapes {
         let (Some(uri), size) = (&shape.uri, shape.size()) else { continue };
         if size > LARGEST_LINK * reach.max(LEAST_REACH) || size < SMALLEST_LINK {

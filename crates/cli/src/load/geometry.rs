@@ -88,7 +88,10 @@ pub(crate) fn geometry(path: &Path, units: Units<'_>, limits: &ReadLimits) -> Re
     if is_depth_image(path) {
         let camera = units.images.camera(path, limits.bytes)?;
         let cloud = read_depth_image_within(path, &camera, limits)?;
-        warn_of_doubtful(path, &camera, &cloud.image_size);
+        let doubt = cloud.image_size.and_then(|(width, height)| camera.doubt_for(width, height));
+        if let Some(doubt) = doubt {
+            tracing::warn!("{}: {doubt}", path.display());
+        }
         let (geometry, kind) = (Geometry::Cloud(cloud), Kind::DepthImage(camera));
         return Ok(Read { geometry, kind, taken: None });
     }
@@ -111,31 +114,4 @@ pub(crate) fn geometry(path: &Path, units: Units<'_>, limits: &ReadLimits) -> Re
         }
     };
     Ok(Read { geometry, kind, taken })
-}
-
-/// Pixels of cameras are about as wide as they are high.
-const UNLIKE: f64 = 1.5;
-
-/// Warns of intrinsics that may be those of another image, or in another order: of a crop they are right.
-fn warn_of_doubtful(path: &Path, camera: &DepthCamera, size: &Option<(usize, usize)>) {
-    let Some((width, height)) = *size else { return };
-    let DepthCamera { fx, fy, cx, cy, .. } = *camera;
-    let is_aside = |middle: f64, pixels: usize| {
-        let share = middle / pixels as f64;
-        !(0.25..=0.75).contains(&share)
-    };
-    let words = if is_aside(cx, width) || is_aside(cy, height) {
-        format!(
-            "the principal point ({cx}, {cy}) is far from the middle of {width} x {height} pixels"
-        )
-    } else if fx / fy > UNLIKE || fy / fx > UNLIKE {
-        format!("the focal lengths are {fx} and {fy} pixels")
-    } else {
-        return;
-    };
-    tracing::warn!(
-        "{}: {words}: give fx, fy, cx and cy in this order, of this image and not of another size; of a \
-         crop they may be right",
-        path.display()
-    );
 }

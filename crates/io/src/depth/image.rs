@@ -12,7 +12,7 @@ use crate::{
 
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// Where the header has width and height, and then what a pixel is.
-pub(super) const SIZE: Place = Place::Byte(16);
+const SIZE: Place = Place::Byte(16);
 const PIXEL: Place = Place::Byte(24);
 /// Deflate makes of two bits at most 258 bytes.
 const LARGEST_EXPANSION: usize = 1032;
@@ -36,7 +36,7 @@ impl Image {
 /// Unpacks a PNG, once it is known that the file backs what its header promises.
 pub(super) fn decode(bytes: &[u8], limits: &ReadLimits) -> Result<Image, FormatError> {
     if bytes.is_empty() {
-        return Err(Place::Byte(0).error(Fault::Empty));
+        return Err(Place::Whole.error(Fault::Empty));
     }
     if !bytes.starts_with(SIGNATURE) {
         let found = excerpt(&bytes[..bytes.len().min(SIGNATURE.len())]);

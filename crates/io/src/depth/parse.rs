@@ -4,10 +4,10 @@ use std::path::Path;
 
 use cloudtouch_geom::{Point3, PointCloud, Pose};
 
-use super::image::{self, SIZE};
+use super::image;
 use crate::{
     depth_camera::DepthCamera,
-    fault::{Fault, FormatError},
+    fault::{Fault, FormatError, Place},
     limits::ReadLimits,
 };
 
@@ -43,11 +43,11 @@ pub fn parse_within(
 ) -> Result<PointCloud, FormatError> {
     let image = image::decode(bytes, limits)?;
     let (width, height) = (image.width, image.height);
-    camera.validate_for(width, height).map_err(|cause| SIZE.error(Fault::Camera(cause)))?;
+    camera.validate_for(width, height).map_err(|cause| Place::Whole.error(Fault::Camera(cause)))?;
     let place = |(index, steps)| camera.point(index % width, index / width, steps);
     let points: Vec<Point3> = image.pixels().enumerate().map(place).collect();
     if points.iter().all(|point| point.z.is_nan()) {
-        return Err(SIZE.error(Fault::NoReturns { pixels: points.len() }));
+        return Err(Place::Whole.error(Fault::NoReturns { pixels: points.len() }));
     }
     Ok(PointCloud {
         image_size: Some((width, height)),

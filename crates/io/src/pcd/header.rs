@@ -209,7 +209,7 @@ fn collect<'a>(lines: &mut Lines<'a>) -> Result<Entries<'a>, FormatError> {
         }
     }
     if lines.number == 0 {
-        return Err(Place::Byte(0).error(Fault::Empty));
+        return Err(Place::Whole.error(Fault::Empty));
     }
     Err(lines
         .place()

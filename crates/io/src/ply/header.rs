@@ -123,7 +123,7 @@ fn check_magic(lines: &mut Lines<'_>) -> Result<(), FormatError> {
             let (expected, found) = ("a first line of \"ply\"", excerpt(line));
             Err(lines.place().error(Fault::WrongMagic { expected, found }))
         }
-        None => Err(Place::Byte(0).error(Fault::Empty)),
+        None => Err(Place::Whole.error(Fault::Empty)),
     }
 }
 

@@ -41,11 +41,11 @@ pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
 /// As [`parse`].
 pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, FormatError> {
     if [b"\xff\xfe", b"\xfe\xff"].iter().any(|mark| bytes.starts_with(*mark)) {
-        return Err(Place::Byte(0).error(Fault::Utf16));
+        return Err(Place::Whole.error(Fault::Utf16));
     }
     let mut lines = Lines::new(bytes);
     let (comment, first) = first_row(&mut lines);
-    let first = first.ok_or_else(|| Place::Byte(0).error(Fault::Empty))?;
+    let first = first.ok_or_else(|| Place::Whole.error(Fault::Empty))?;
     let first_place = lines.place();
     let columns = Columns::of(comment, first, first_place)?;
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,9 @@ def points(depth: Any, intrinsics: npt.ArrayLike, depth_scale: float | None) -> 
     metres = _metres(depth, depth_scale)
     height, width = metres.shape
     fx, fy, cx, cy = camera = _pinhole(intrinsics)
-    _native.check_camera(camera, 0.001 if depth_scale is None else depth_scale, (width, height))
+    doubt = _native.check_camera(camera, 0.001 if depth_scale is None else depth_scale, (width, height))
+    if doubt is not None:
+        warnings.warn(doubt, stacklevel=3)
     rows, columns = np.indices(metres.shape)
     return np.stack([(columns - cx) / fx * metres, (rows - cy) / fy * metres, metres], axis=-1)
 

@@ -259,6 +259,23 @@ class Query:
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
         return Batch._of(self._query.run_batch(*native_pair(a, b), matrices, errors == "keep"))
 
+    def is_free(self, a: Body, b: Body, pose: npt.ArrayLike) -> bool:
+        """Whether a pose reads as free: ``run(a, b, pose).verdict == "free"``, and sooner.
+
+        Parameters
+        ----------
+        pose
+            (4, 4): from the frame of ``b`` into that of ``a``, m.
+
+        Raises
+        ------
+        ValueError
+            ``pose`` has the wrong shape or type.
+        CloudtouchError
+            As :meth:`run`.
+        """
+        return self._query.is_free(*native_pair(a, b), _arrays.numbers(pose, "pose", (4, 4)))
+
     def are_free(self, a: Body, b: Body, poses: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Which of many poses read as free, on all cores: ``run_batch(a, b, poses).verdict == "free"``, and sooner.
 

@@ -191,7 +191,9 @@ class Batch:
     contact_count: npt.NDArray[np.int64]
     """(M,): how many contacts there are."""
     warning_count: npt.NDArray[np.int64]
-    """(M,): how many warnings there are; :meth:`Query.run` says which."""
+    """(M,): how many warnings there are."""
+    warnings: npt.NDArray[np.str_]
+    """(M,): their codes, with commas between them, as text; :meth:`Query.run` says more."""
     seconds: Floats
     """(M,): how long each query took on its thread, s."""
     error: npt.NDArray[np.str_]
@@ -203,15 +205,23 @@ class Batch:
 
     @classmethod
     def _of(cls, told: dict[str, Any]) -> "Batch":
-        return cls(**{**told, "error": np.asarray(told["error"], dtype=np.str_)})
+        texts = {name: np.asarray(told[name], dtype=np.str_) for name in ("warnings", "error")}
+        return cls(**{**told, **texts})
 
     def __len__(self) -> int:
         return len(self.probability)
 
     def __repr__(self) -> str:
-        names, counts = np.unique(self.verdict, return_counts=True)
-        found = ", ".join(f"{count} {name}" for name, count in zip(names, counts))
-        return f"<Batch: {len(self)} poses{': ' if found else ''}{found}>"
+        verdicts = _counted(self.verdict)
+        codes = [code for codes in self.warnings.tolist() if codes for code in codes.split(",")]
+        warned = _counted(codes)
+        found = f"{': ' if verdicts else ''}{verdicts}{'; warnings: ' if warned else ''}{warned}"
+        return f"<Batch: {len(self)} poses{found}>"
+
+
+def _counted(names: npt.ArrayLike) -> str:
+    found, counts = np.unique(names, return_counts=True)
+    return ", ".join(f"{count} {name}" for name, count in zip(found, counts))
 
 
 def _no_points() -> PointProbabilities:

@@ -25,13 +25,17 @@ const LARGE_MESH_RATIO: f64 = 100.0;
 const LARGE_OBJECT: f64 = 20.0;
 /// ... in a scene so many times smaller.
 const LARGE_OBJECT_RATIO: f64 = 3.0;
+/// No side of a box is so small a part of its diagonal but of a floor, a wall, or what is like these.
+const FLAT: f64 = 0.05;
 /// Surroundings are larger than what moves in them; an inch is so many centimetres, nearly.
 const EXCHANGED_RATIO: f64 = 3.0;
 /// The same of two meshes.
 const EXCHANGED_MESHES_RATIO: f64 = 20.0;
-/// An object is not so many sizes of the larger body away from it. A pose given in millimetres is, unless the
-/// object lies within a twenty-fifth of that size.
+/// An object is not so many sizes of the larger body away from it, ...
 const FARTHEST_SIZES: f64 = 40.0;
+/// ... nor so far, m, and this many. A pose given in millimetres is, unless the object lies within 2 cm of the scene's
+/// origin, or a hundredth of that size.
+const FAR: [f64; 2] = [20.0, 8.0];
 /// Coordinates of a mesh are not this part of either body apart, ...
 const COARSE: f64 = 0.02;
 /// ... nor those of a cloud, whose points scatter anyway, ...
@@ -71,7 +75,7 @@ pub(crate) fn doubts(
     }));
     warnings.extend(bodies.into_iter().flat_map(|(body, shape, _)| of_sensor(body, shape)));
     warnings.extend(exchanged(a, b).filter(|_| are_alone));
-    warnings.extend(gap.and_then(|gap| apart((a, b), gap)));
+    warnings.extend(a_from_b.zip(gap).and_then(|(a_from_b, gap)| apart((a, b), a_from_b, gap)));
     warnings.extend(unseen.and_then(|unseen| limits.exceeded_by(unseen)));
     warnings.extend(a_from_b.and_then(|a_from_b| taken_for_robot((a, b), a_from_b, 0.0, limits)));
     warnings
@@ -133,21 +137,36 @@ fn of_sensor(body: Which, shape: Shape<'_>) -> impl Iterator<Item = Warning> {
 }
 
 fn units((a, b): (Shape<'_>, Shape<'_>), are_alone: bool) -> Option<Warning> {
-    let largest = if are_alone { LARGEST_OBJECT_RATIO } else { LARGEST_RATIO_AMONG_MANY };
     let of = |body, shape: Shape<'_>, other: Shape<'_>| {
         let (size_m, other_size_m) = (shape.size(), other.size());
         let is_mesh = matches!(shape, Shape::Mesh(_));
-        let beyond = |size: f64, ratio: f64| size_m > size && size_m > ratio * other_size_m;
+        let is_object = body == Which::B;
+        let is_beside_cloud = !are_alone && matches!(other, Shape::Cloud(_));
+        let ratio_of_object = if are_alone { LARGEST_OBJECT_RATIO } else { LARGEST_RATIO_AMONG_MANY };
+        let too_large = [
+            (true, 0.0, LARGEST_RATIO),
+            (is_object, 0.0, ratio_of_object),
+            (is_mesh, LARGE_MESH, LARGE_MESH_RATIO),
+            (is_mesh && is_object, LARGE_MESH, 0.0),
+            (is_mesh && is_object, LARGE_OBJECT, LARGE_OBJECT_RATIO),
+            (is_beside_cloud && is_large_object(shape), LARGE_OBJECT, LARGE_OBJECT_RATIO),
+        ];
+        let is_beyond = |&(is_one, size, ratio): &(bool, f64, f64)| {
+            is_one && size_m > size && size_m > ratio * other_size_m
+        };
         // A single point has no size; another warning tells of it.
-        let is_suspicious = other_size_m > 0.0
-            && (beyond(0.0, LARGEST_RATIO)
-                || body == Which::B && beyond(0.0, largest)
-                || is_mesh && beyond(LARGE_MESH, LARGE_MESH_RATIO)
-                || is_mesh && body == Which::B && beyond(LARGE_MESH, 0.0)
-                || is_mesh && body == Which::B && beyond(LARGE_OBJECT, LARGE_OBJECT_RATIO));
+        let is_suspicious = other_size_m > 0.0 && too_large.iter().any(is_beyond);
         is_suspicious.then_some(Warning::Units { body, size_m, other_size_m })
     };
     of(Which::A, a, b).or_else(|| of(Which::B, b, a))
+}
+
+/// Whether a mesh is larger than objects are and not flat, as floors and walls are: among many bodies it may be what moves,
+/// though it is the larger one.
+pub(crate) fn is_large_object(shape: Shape<'_>) -> bool {
+    let [low, high] = shape.corners();
+    let (size, thickness) = (shape.size(), (high - low).min());
+    matches!(shape, Shape::Mesh(_)) && size > LARGE_OBJECT && thickness >= FLAT * size
 }
 
 /// Points too far apart, or too noisy, to tell of a body of such a size, m, with its middle there: most of them
@@ -221,11 +240,20 @@ fn exchanged(a: Shape<'_>, b: Shape<'_>) -> Option<Warning> {
     is_larger.then_some(Warning::Exchanged { size_m, other_size_m })
 }
 
-fn apart((a, b): (Shape<'_>, Shape<'_>), gap_m: f64) -> Option<Warning> {
+fn apart((a, b): (Shape<'_>, Shape<'_>), a_from_b: &Pose, gap_m: f64) -> Option<Warning> {
     let larger = a.size().max(b.size());
-    if larger > 0.0 && gap_m > FARTHEST_SIZES * larger {
-        Some(Warning::FarAway { gap_m, size_m: larger })
-    } else {
-        (gap_m > b.size()).then(|| Warning::OutsideScene { gap_m, size_m: a.size() })
+    let [far, sizes] = FAR;
+    let is_far = gap_m > FARTHEST_SIZES * larger || gap_m > far && gap_m > sizes * larger;
+    if larger > 0.0 && is_far {
+        return Some(Warning::FarAway { gap_m, size_m: larger });
     }
+    // Between a camera and what it saw is nowhere else.
+    let is_in_view = || match a {
+        Shape::Cloud(cloud) => {
+            cloud.has_looked_past(&a_from_b.transform_point(&b.middle()), b.breadth())
+        }
+        Shape::Mesh(_) => false,
+    };
+    (gap_m > b.size() && !is_in_view())
+        .then(|| Warning::OutsideScene { gap_m, size_m: a.size() })
 }

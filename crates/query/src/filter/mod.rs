@@ -5,6 +5,7 @@ mod collision_map;
 mod duplicates;
 mod going_on;
 mod lines;
+mod missing;
 mod near;
 mod outliers;
 mod range;
@@ -50,7 +51,8 @@ pub struct Filtered {
 
 /// Runs the stages that `settings` asks for, cheapest first.
 ///
-/// Rows with a coordinate that is NaN, infinite or beyond ±1e30 m always go: missing returns. A stage that has nothing to work with (no
+/// Rows with a coordinate that is NaN, infinite or beyond ±1e30 m always go: missing returns. So do rows that repeat
+/// the origin or the place of the sensor, three or more, which stand for none. A stage that has nothing to work with (no
 /// image layout and no neighbours, for instance) removes nothing. Every stage can only remove
 /// points, so each can hide a true obstacle; the counts tell how many points that concerns. The `sensor` tells how far a
 /// surface may be off a line for noise, by which steep surfaces and veils are told apart.
@@ -91,7 +93,7 @@ pub(crate) fn filter_and_tell(
     check_lengths(cloud)?;
     let mut run = Run { cloud, kept: (0..cloud.len()).collect(), stages: Vec::new() };
     let mut removed = Removed::default();
-    run.stage("missing", |cloud, kept| kept.retain(|&i| PointCloud::is_return(&cloud.points[i])));
+    run.stage("missing", missing::drop_missing);
     if settings.min_range != Some(0.0) || settings.max_range.is_finite() {
         run.stage("range", |cloud, kept| range::keep_in_range(cloud, kept, settings));
         removed.near = near::too_near(cloud, settings);

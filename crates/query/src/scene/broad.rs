@@ -14,7 +14,7 @@ use cloudtouch_geom::{Pose, Vector3};
 use crate::body::BodyRef;
 use crate::check::coordinates::{LARGEST_COORDINATE, bad_entry};
 use crate::classifier::Clock;
-use crate::doubt::of_pair::coarse_beside;
+use crate::doubt::of_pair::{coarse_beside, is_large_object};
 use crate::doubt::warning::Which;
 use crate::judge::{MOST_DEVIATIONS, NOISE_KNOTS, probability};
 use crate::query::Query;
@@ -64,7 +64,7 @@ impl BroadPhase {
         pose: &Pose,
         smallest: Shape<'_>,
         largest: Option<Shape<'_>>,
-        others: impl Iterator<Item = Shape<'a>>,
+        mut others: impl Iterator<Item = Shape<'a>>,
     ) -> Corners {
         // Two such poses are no farther from each other than can be reckoned with.
         let is_placed = pose.translation().norm() < 0.25 * LARGEST_COORDINATE;
@@ -72,12 +72,20 @@ impl BroadPhase {
             let as_smaller = |largest| self.terms.may_doubt((largest, shape), Which::B);
             self.terms.may_doubt((shape, smallest), Which::A) || largest.is_some_and(as_smaller)
         };
-        // That of the smallest box need not be the body that a coarse cloud tells least of.
-        let coarse = coarse_beside(shape);
-        let mut too_small = others.take_while(|other| other.size() < coarse);
-        let mut is_coarse =
-            || too_small.any(|other| self.terms.may_doubt((shape, other), Which::A));
-        if !is_placed || !self.nothing_is_free || may_doubt() || is_coarse() {
+        // That of the smallest box need not be the body that a coarse cloud tells least of, nor a cloud, beside which a
+        // large mesh is doubted.
+        let mut doubts_another = || match shape {
+            Shape::Mesh(_) if is_large_object(shape) => others
+                .find(|other| matches!(other, Shape::Cloud(_)))
+                .is_some_and(|cloud| self.terms.may_doubt((shape, cloud), Which::A)),
+            Shape::Mesh(_) => false,
+            Shape::Cloud(_) => {
+                let coarse = coarse_beside(shape);
+                let mut too_small = others.by_ref().take_while(|other| other.size() < coarse);
+                too_small.any(|other| self.terms.may_doubt((shape, other), Which::A))
+            }
+        };
+        if !is_placed || !self.nothing_is_free || may_doubt() || doubts_another() {
             return everywhere();
         }
         around(shape, pose)
