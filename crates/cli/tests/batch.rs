@@ -160,7 +160,7 @@ fn warnings_and_guessed_sensors_are_told_beside_the_table() {
     let cases = case_file(&[case_at("a", 0.3), case_at("b", 0.05)]);
     inputs.write("cases.json", &cases.replace("\"scene_sensor\":\"iso:0.002\",", ""));
     let text = inputs.run(&["batch", "cases.json", "--sensor=kinect"]).quiet(0).stdout();
-    let warning = "warning in 2 cases, first a: the scene is of a camera and has no image layout";
+    let warning = "warning in 2 cases, first a: the scene has no rows and columns";
     assert!(text.contains(warning), "{text}");
     let text = inputs.run(&["batch", "cases.json", "--sensor=auto"]).quiet(0).stdout();
     let first = text.lines().next().unwrap();

@@ -31,7 +31,9 @@ pub(crate) fn remedy(extension: &str) -> &'static str {
             "rename it to .xyz if each of its lines is a point, and convert it otherwise"
         }
         "obj" | "stl" => "it is a mesh: read it as one, in Python with `Mesh.read`",
-        "pcd" | "xyz" | "txt" | "csv" => "it is a cloud: read it as one, in Python with `Cloud.read`",
+        "pcd" | "xyz" | "txt" | "csv" => {
+            "it is a cloud: read it as one, in Python with `Cloud.read`"
+        }
         "vtk" | "vtp" | "vtu" => "export it as .ply or .csv from ParaView",
         "" => "give it the extension of its format",
         _ => "convert it",

@@ -31,8 +31,8 @@ pub mod xyz;
 pub use cloudtouch_geom as geom;
 
 pub use atomic::{abandon_unfinished, write_atomically};
-pub use depth::is_depth_image;
 pub use camera_doubt::CameraDoubt;
+pub use depth::is_depth_image;
 pub use depth_camera::{CameraError, DepthCamera};
 pub use error::{ReadError, WriteError};
 pub use fault::{Fault, FormatError, Place};

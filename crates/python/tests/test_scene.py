@@ -42,7 +42,7 @@ def test_where_bodies_are_and_what_is_to_be_said_of_them_is_told_where_all_is_fr
     scene.add("scan", ct.Cloud(ahead, sensor="kinect"), lifted(3.0))
     found = scene.check(ct.Query())
     assert [warning.name for warning in found.warnings] == ["scan"] and found.verdict == "free"
-    assert "no image layout" in found.warnings[0].words
+    assert "no rows and columns" in found.warnings[0].words
 
 
 def test_what_is_attached_moves_along(scene):

@@ -52,7 +52,8 @@ fn free_in_and_over(step: usize, size: [usize; 2], body: [f64; 3], deep: f64) ->
             let x = 0.6 * z * (unit(1) - 0.5);
             for (free, y) in free.iter_mut().zip([deep, -0.5 * body[1] - 0.02 - 0.1 * unit(2)]) {
                 let pose = camera_pose.inverse().after(&at(x, above + y, z));
-                let report = query(Mode::Calibrated).run(&cloud, &body_mesh, &pose).unwrap();
+                let report =
+                    query(Mode::Calibrated).run(&cloud, &body_mesh, &pose).expect("an answer");
                 *free += usize::from(report.verdict == Verdict::Free);
             }
         }

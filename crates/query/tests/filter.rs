@@ -68,7 +68,8 @@ fn what_is_near_the_origin_of_a_map_was_taken_for_no_return() {
     for sensor in ["lidar:0.02,0.003", "kinect", "stereo:0.09,570,0.2"] {
         let settings = FilterSettings::for_sensor(&sensor.parse().unwrap());
         let dropped = |cloud: &PointCloud, settings: &FilterSettings| {
-            removed(&filter(cloud, settings, &SensorModel::Exact).unwrap().stages, "range")
+            let stages = filter(cloud, settings, &SensorModel::Exact).unwrap().stages;
+            removed(&stages, "missing") + removed(&stages, "range")
         };
         // Missing returns are written so.
         assert_eq!(dropped(&map, &settings), 1, "{sensor}");

@@ -142,7 +142,8 @@ fn units((a, b): (Shape<'_>, Shape<'_>), are_alone: bool) -> Option<Warning> {
         let is_mesh = matches!(shape, Shape::Mesh(_));
         let is_object = body == Which::B;
         let is_beside_cloud = !are_alone && matches!(other, Shape::Cloud(_));
-        let ratio_of_object = if are_alone { LARGEST_OBJECT_RATIO } else { LARGEST_RATIO_AMONG_MANY };
+        let ratio_of_object =
+            if are_alone { LARGEST_OBJECT_RATIO } else { LARGEST_RATIO_AMONG_MANY };
         let too_large = [
             (true, 0.0, LARGEST_RATIO),
             (is_object, 0.0, ratio_of_object),
@@ -254,6 +255,5 @@ fn apart((a, b): (Shape<'_>, Shape<'_>), a_from_b: &Pose, gap_m: f64) -> Option<
         }
         Shape::Mesh(_) => false,
     };
-    (gap_m > b.size() && !is_in_view())
-        .then(|| Warning::OutsideScene { gap_m, size_m: a.size() })
+    (gap_m > b.size() && !is_in_view()).then(|| Warning::OutsideScene { gap_m, size_m: a.size() })
 }

@@ -2,7 +2,8 @@
 
 use cloudtouch_geom::{Point3, PointCloud};
 
-/// So many rows that repeat the place of the sensor, or the origin of the file, stand for no return.
+/// So many rows that repeat the place of the sensor, or the origin of the file, stand for no return; of an image, whose rows
+/// without one are there, a single one does.
 const PLACEHOLDERS: usize = 3;
 /// A row that is no farther from it is at a place, m.
 const AT_IT: f64 = 1e-6;
@@ -10,10 +11,19 @@ const AT_IT: f64 = 1e-6;
 /// Drops what is no return, or is written for none: some drivers write zeros, or the place of the sensor.
 pub(super) fn drop_missing(cloud: &PointCloud, kept: &mut Vec<usize>) {
     kept.retain(|&index| PointCloud::is_return(&cloud.points[index]));
-    for place in [Point3::origin(), cloud.sensor_origin()] {
-        let is_at_it = |&index: &usize| (cloud.points[index] - place).norm_squared() <= AT_IT * AT_IT;
-        if kept.iter().filter(|index| is_at_it(index)).count() >= PLACEHOLDERS {
-            kept.retain(|index| !is_at_it(index));
-        }
+    let least = if cloud.is_image() { 1 } else { PLACEHOLDERS };
+    let is_zero = |index: &usize| cloud.points[*index] == Point3::origin();
+    drop_repeated(kept, least, is_zero);
+    if let Some(pose) = &cloud.sensor_pose {
+        let place = Point3::from(pose.translation());
+        let is_at_it = |index: &usize| (cloud.points[*index] - place).norm() <= AT_IT;
+        drop_repeated(kept, least, is_at_it);
+    }
+}
+
+fn drop_repeated(kept: &mut Vec<usize>, least: usize, is_placeholder: impl Fn(&usize) -> bool) {
+    let count = kept.iter().filter(|index| is_placeholder(index)).count();
+    if count >= least && count < kept.len() {
+        kept.retain(|index| !is_placeholder(index));
     }
 }

@@ -51,8 +51,8 @@ pub struct Filtered {
 
 /// Runs the stages that `settings` asks for, cheapest first.
 ///
-/// Rows with a coordinate that is NaN, infinite or beyond ±1e30 m always go: missing returns. So do rows that repeat
-/// the origin or the place of the sensor, three or more, which stand for none. A stage that has nothing to work with (no
+/// Rows with a coordinate that is NaN, infinite or beyond ±1e30 m always go: missing returns. So do rows at
+/// the origin or at the place of the sensor, one in an image and three elsewhere, which stand for none. A stage that has nothing to work with (no
 /// image layout and no neighbours, for instance) removes nothing. Every stage can only remove
 /// points, so each can hide a true obstacle; the counts tell how many points that concerns. The `sensor` tells how far a
 /// surface may be off a line for noise, by which steep surfaces and veils are told apart.

@@ -9,11 +9,13 @@ const NEAREST: f64 = 0.1;
 /// Returns that are nearer than this to the place of a sensor are at it, m.
 const AT_IT: f64 = 1e-6;
 
-/// Whether a row of an image is a return that the sensor there saw: some drivers write the place of the sensor for none,
-/// which may be rounded.
+/// Whether a row of an image is a return that the sensor there saw: some drivers write zeros for none, or the place of the
+/// sensor, which may be rounded.
 pub(crate) fn is_return_to(place: &Point3, p: &Point3) -> bool {
     const ROUNDED: f64 = 1e-3;
-    PointCloud::is_return(p) && (p - place).norm_squared() > ROUNDED * ROUNDED
+    PointCloud::is_return(p)
+        && *p != Point3::origin()
+        && (p - place).norm_squared() > ROUNDED * ROUNDED
 }
 
 impl FilterSettings {

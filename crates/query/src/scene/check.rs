@@ -20,9 +20,9 @@ impl Scene {
     /// All pairs of bodies that do not read as free at the thresholds of the query, the worst first, on
     /// all threads of the current rayon pool, with the same bits whatever their number.
     ///
-    /// It is the answer to all pairs asked one by one, the larger body first, but that the boxes around
-    /// most rule them out; with one difference: being far from one body is no reason to doubt the pose
-    /// of another ([`Undecided::Units`](crate::Undecided::Units)), only being far from all of them.
+    /// It is the answer to all pairs asked one by one ([`Query::among_many`]), the larger body first, but that the boxes
+    /// around most rule them out. Being far from one body is no reason to doubt the pose of another
+    /// ([`Undecided::Units`](crate::Undecided::Units)), only being far from all of them.
     /// A pair without an answer, and one that is undecided for whatever reason, such as space that a
     /// depth image did not see, is among those returned. Pairs whose boxes do not meet are not looked at,
     /// the others take a test of two boxes, and those near each other, or in doubt, a query. A deadline of the

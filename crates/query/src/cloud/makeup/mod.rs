@@ -47,7 +47,7 @@ pub(crate) enum SensorDoubt {
     Range { median: f64, limit: f64 },
     /// A laser scanner, and the layout of a camera's image.
     Layout,
-    /// A camera, and no image.
+    /// A camera, or a laser scanner at some place, and no image.
     NoImage,
     /// No camera, or no laser scanner, at the place stated has such rows and columns.
     Misplaced,
@@ -194,6 +194,10 @@ pub(super) fn sensor_doubts(
         }
         SensorModel::Lidar { .. } if layout.is_some_and(|layout| layout.is_camera()) => {
             doubts.push(SensorDoubt::Layout);
+        }
+        // Scans that were merged have no place.
+        SensorModel::Lidar { .. } if !cloud.is_image() && cloud.sensor_pose.is_some() => {
+            doubts.push(SensorDoubt::NoImage);
         }
         _ => {}
     }

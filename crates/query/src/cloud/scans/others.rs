@@ -20,7 +20,7 @@ pub(super) fn beyond_range(
     let from = image.sensor_origin();
     let is_beyond = |&row: &usize| {
         let place = &image.points[row];
-        PointCloud::is_return(place) && (place - from).norm() > most
+        is_return_to(&from, place) && (place - from).norm() > most
     };
     let rows: Vec<usize> = match most.is_finite() {
         true => (0..image.len()).filter(is_beyond).collect(),

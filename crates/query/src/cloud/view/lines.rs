@@ -3,6 +3,10 @@
 //! Lines of a turning scanner may be far apart: on a floor that is seen aslant, decimetres. What lies between two of
 //! them is taken for straight, as the floor is: there one over the range goes evenly with the elevation.
 
+/// The returns of a line differ by less than this part of what parts lines in the mean; of some scanners those in the
+/// middle are a quarter of it apart.
+const ONE_LINE: f64 = 0.1;
+
 /// What is known of a line in a cell: its elevation, rad, and the range, m, clearly behind its farthest return.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Met {
@@ -30,9 +34,8 @@ impl Lines {
             self.cells[cell] = Some([met; 2]);
             return;
         };
-        // Those of one line differ by less than half of what parts lines.
         let is_of =
-            |line: &Met| f64::from((met.elevation - line.elevation).abs()) < 0.5 * self.step;
+            |line: &Met| f64::from((met.elevation - line.elevation).abs()) < ONE_LINE * self.step;
         let is_low = is_of(low);
         for line in [&mut *low, &mut *high] {
             if is_of(line) {
@@ -48,18 +51,17 @@ impl Lines {
     }
 
     /// The range clearly behind what lies at an elevation, between the lines next below and above it in these cells,
-    /// from the lowest on; `None` where one of the two is not in them.
-    pub(super) fn behind(&self, elevation: f64, cells: impl Iterator<Item = usize>) -> Option<f64> {
+    /// from its own on; `None` where one of the two is not in them.
+    pub(super) fn behind(
+        &self,
+        elevation: f64,
+        down: impl Iterator<Item = usize>,
+        up: impl Iterator<Item = usize>,
+    ) -> Option<f64> {
         let at = elevation as f32;
-        let (mut below, mut above) = (None::<Met>, None::<Met>);
-        for met in cells.filter_map(|cell| self.cells[cell]).flatten() {
-            if met.elevation <= at {
-                below = Some(met);
-            } else if above.is_none() {
-                above = Some(met);
-            }
-        }
-        let (below, above) = (below?, above?);
+        let met = |cell: usize| self.cells[cell].into_iter().flatten();
+        let below = down.flat_map(|cell| met(cell).rev()).find(|met| met.elevation <= at)?;
+        let above = up.flat_map(met).find(|met| met.elevation > at)?;
         let part = (at - below.elevation) / (above.elevation - below.elevation);
         let inverse = (1.0 - part) / below.behind + part / above.behind;
         Some(f64::from(inverse.recip()))
@@ -79,12 +81,16 @@ mod tests {
             // Beside it, a little lower and not as far.
             lines.add(cell, elevation - 0.001, 0.5 * range(elevation));
         }
+        let behind = |elevation: f64, first: usize| {
+            let own = ((elevation + 0.295) / 0.03) as usize;
+            lines.behind(elevation, (first..=own).rev(), own..3)
+        };
         for elevation in [-0.27, -0.26, -0.245, -0.23] {
-            let found = lines.behind(elevation, 0..3).unwrap();
+            let found = behind(elevation, 0).unwrap();
             assert!((found / range(elevation) - 1.0).abs() < 0.005, "{elevation}: {found}");
         }
-        assert_eq!(lines.behind(-0.21, 0..3), None);
-        assert_eq!(lines.behind(-0.29, 0..3), None);
-        assert_eq!(lines.behind(-0.23, 1..3), None);
+        assert_eq!(behind(-0.21, 0), None);
+        assert_eq!(behind(-0.29, 0), None);
+        assert_eq!(behind(-0.23, 1), None);
     }
 }

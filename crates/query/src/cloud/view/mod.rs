@@ -1,6 +1,7 @@
 //! A single depth image: what its camera did not look at, or not see, was never seen to be empty.
 
 mod about;
+mod extent;
 mod lens;
 mod lines;
 pub(super) mod near;

@@ -10,6 +10,7 @@ use cloudtouch_geom::{Point3, Vector3};
 use nalgebra::UnitQuaternion;
 
 use super::about::Seen;
+use super::extent::extent;
 use super::lens::Lens;
 use super::lines::Lines;
 use super::straight::Mean;
@@ -111,35 +112,29 @@ impl Raster {
             Some((number, [range - clear, range + clear], lens.project(ray)?))
         };
         let placed: Vec<_> = rays.iter().enumerate().filter_map(place).collect();
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for (_, _, at) in &placed {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(at[axis]);
-                high[axis] = high[axis].max(at[axis]);
-            }
-        }
-        let mut extent = [high[0] - low[0], high[1] - low[1]];
+        let [low, high] = extent(&lens, placed.iter().map(|(_, _, at)| *at));
+        let mut sides = [high[0] - low[0], high[1] - low[1]];
         let pixel_count = (pixels[0] * pixels[1]).max(placed.len()).max(1) as f64;
-        let pitch_over = |extent: [f64; 2]| {
-            let area = extent[0] * extent[1];
+        let pitch_over = |[width, height]: [f64; 2]| {
+            let area = width * height;
             (CELL_PIXELS * (area / pixel_count).sqrt())
                 .max((area / MOST_CELLS).sqrt())
-                .max(extent[0].max(extent[1]) / MOST_COLUMNS)
+                .max(width.max(height) / MOST_COLUMNS)
         };
-        let mut pitch = pitch_over(extent);
+        let mut pitch = pitch_over(sides);
         if !(pitch > 0.0 && pitch.is_finite()) {
             return None;
         }
         let is_round =
-            matches!(lens, Lens::Panorama(_)) && extent[0] + LEAST_GAP_CELLS * pitch > TAU;
+            matches!(lens, Lens::Panorama(_)) && sides[0] + LEAST_GAP_CELLS * pitch > TAU;
         if is_round {
             // Whether a full turn lacks a column is told by rounding, where one is straight behind.
-            extent[0] = TAU;
-            pitch = TAU / (TAU / pitch_over(extent)).round().max(1.0);
+            sides[0] = TAU;
+            pitch = TAU / (TAU / pitch_over(sides)).round().max(1.0);
         }
         let steps = match lens {
             Lens::Camera(_) => [pitch / CELL_PIXELS; 2],
-            Lens::Panorama(_) => steps_of_panorama(extent, pixels),
+            Lens::Panorama(_) => steps_of_panorama(sides, pixels),
         };
         // A pixel's surface reaches beyond its middle: half a cell around the outermost ones.
         let mut low = low.map(|v| v - 0.5 * pitch);
@@ -148,7 +143,7 @@ impl Raster {
             // one is that is where two meet.
             low[0] = -ASIDE * steps[0];
         }
-        let span = extent.map(|side| side / pitch + 1.0);
+        let span = sides.map(|side| side / pitch + 1.0);
         let mut size = span.map(|cells| cells.ceil() as usize);
         if is_round {
             size[0] = (TAU / pitch).round() as usize;
@@ -176,7 +171,7 @@ impl Raster {
                 raster.cells[cell].add([before, behind]);
                 let (ray, range, _) = &rays[number];
                 let distance = raster.lens.distance(ray, *range);
-                let aside = raster.from_middle(at, middle);
+                let aside = raster.place_in(at, middle);
                 raster.means[cell].add(aside, distance);
                 if number >= returns {
                     raster.is_open[cell] = true;
@@ -203,8 +198,8 @@ impl Raster {
         (is_within(x, 0) && is_within(y, 1)).then_some([x.floor() as isize, y.floor() as isize])
     }
 
-    /// Where a place of the view is, from the middle of its cell, in cells.
-    pub(super) fn from_middle(&self, at: [f64; 2], cell: [isize; 2]) -> [f64; 2] {
+    /// Where a place of the view is in its cell, from the middle, in cells.
+    pub(super) fn place_in(&self, at: [f64; 2], cell: [isize; 2]) -> [f64; 2] {
         [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.pitch - cell[axis] as f64 - 0.5)
     }
 

@@ -123,15 +123,17 @@ impl Raster {
         }
         let distance = self.lens.distance(ray, range);
         surface
-            .distance(clear, self.from_middle(at, [x, y]))
+            .distance(clear, self.place_in(at, [x, y]))
             .is_some_and(|surface| distance > surface + clear * distance / range)
     }
 
     /// The range clearly behind what two lines of a panorama have between them, where these are next to one another.
     fn behind_lines(&self, elevation: f64, [x, y]: [isize; 2]) -> Option<f64> {
-        let rows = self.reach[1];
-        let cells = (y - rows..=y + rows).filter_map(|y| self.index(x, y));
-        self.lines.as_ref()?.behind(elevation, cells)
+        let cell = |y| self.index(x, y);
+        // However far apart they are: those of some scanners are the farther apart the farther down they look.
+        let down = (0..=y).rev().filter_map(cell);
+        let up = (y..self.size[1] as isize).filter_map(cell);
+        self.lines.as_ref()?.behind(elevation, down, up)
     }
 }
 

@@ -138,7 +138,8 @@ pub enum Warning {
         /// Whose.
         body: Which,
     },
-    /// A camera is stated for a cloud without image layout: what it did not see is not known.
+    /// A camera, or a laser scanner and where it stood, is stated for a cloud without image layout: what it did not see is
+    /// not known.
     NoImage {
         /// Whose.
         body: Which,

@@ -81,7 +81,7 @@ impl Warning {
                 "the {body} is laid out as the image of a camera and its sensor is stated as a laser scanner:"
             ),
             Self::NoImage { body } => format!(
-                "the {body} is of a camera and has no image layout: what the camera did not see counts as empty;"
+                "the {body} has no rows and columns: what its sensor did not see counts as empty;"
             ),
             Self::ImagePlace { body } => format!(
                 "the {body} has rows and columns as an image, which no sensor at the place stated for it has:"
