@@ -111,7 +111,7 @@ fn keys_come_in_the_documented_order() {
 #[test]
 fn far_apart_the_clearance_is_null() {
     let inputs = Inputs::new();
-    let scene = ["query", "floor.pcd", "floor.pcd", "--translate=0,0,50", "--json"];
+    let scene = ["query", "floor.pcd", "floor.pcd", "--translate=0,0,15", "--json"];
     let report = inputs.run(&scene).quiet(0).json_lines().remove(0);
     check_report(&report);
     assert_eq!((&report["clearance_m"], &report["verdict"]), (&Value::Null, &"free".into()));
