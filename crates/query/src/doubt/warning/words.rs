@@ -169,8 +169,8 @@ impl Warning {
             Self::SensorLayout { .. } => "kinect, stereo or tof?",
             Self::NoImage { .. } => "give the organised cloud",
             Self::ImagePlace { .. } => {
-                "say where it stood in their frame (`sensor_pose`, VIEWPOINT of a PCD); without the layout what it did not \
-                 see counts as empty"
+                "say where it stood in their frame (`sensor_pose`, VIEWPOINT of a PCD), and leave out rows and columns \
+                 alike; without the layout what it did not see counts as empty"
             }
             Self::SelfFilter { .. } => {
                 "check its pose, its joints, its unit and the padding (metres)"
