@@ -2,20 +2,10 @@
 
 use cloudtouch_geom::Vector3;
 
-use super::raster::Raster;
+use super::raster::{Raster, Seen};
 
 /// Cells along the edge of a block, of which the one that was seen least far tells.
 const BLOCK: usize = 8;
-
-/// How far was seen.
-#[derive(Debug)]
-pub(super) struct Seen {
-    /// The range of the nearest return of each cell and those around it, m, beyond which a surface may be between returns
-    /// or another image may know one better; infinite without one.
-    pub(super) about: Vec<f64>,
-    /// Up to which range all of a block of cells was seen, m.
-    blocks: Vec<f64>,
-}
 
 impl Raster {
     /// Whether it saw all places no farther than a distance (m) from where a ray leads. It may have where this does not

@@ -9,7 +9,6 @@ use std::sync::OnceLock;
 use cloudtouch_geom::{Point3, Vector3};
 use nalgebra::UnitQuaternion;
 
-use super::about::Seen;
 use super::extent::extent;
 use super::lens::Lens;
 use super::lines::Lines;
@@ -54,6 +53,16 @@ pub(super) struct Raster {
     pub(super) lines: Option<Lines>,
     /// How far was seen, once that is needed.
     pub(super) seen: OnceLock<Seen>,
+}
+
+/// How far was seen.
+#[derive(Debug)]
+pub(super) struct Seen {
+    /// The range of the nearest return of each cell and those around it, m, beyond which a surface may be between returns
+    /// or another image may know one better; infinite without one.
+    pub(super) about: Vec<f64>,
+    /// Up to which range all of a block of cells was seen, m.
+    pub(super) blocks: Vec<f64>,
 }
 
 /// What was met in a cell.
