@@ -14,7 +14,7 @@ impl Raster {
         let Some([low, high]) = self.blocks_about(ray, distance) else { return false };
         let farthest = ray.norm() + distance;
         let seen = &self.seen().blocks;
-        let columns = self.size[0].div_ceil(BLOCK);
+        let columns = self.grid.size[0].div_ceil(BLOCK);
         (low[1]..=high[1]).all(|y| (low[0]..=high[0]).all(|x| farthest <= seen[y * columns + x]))
     }
 
@@ -22,7 +22,8 @@ impl Raster {
     fn blocks_about(&self, ray: &Vector3, distance: f64) -> Option<[[usize; 2]; 2]> {
         let spot = self.lens.spot(ray)?;
         let reach = spot.reach(distance)?;
-        let cell_at = |sign: f64| self.cell([0, 1].map(|axis| spot.at[axis] + sign * reach[axis]));
+        let cell_at =
+            |sign: f64| self.grid.cell([0, 1].map(|axis| spot.at[axis] + sign * reach[axis]));
         let corners = [cell_at(-1.0)?, cell_at(1.0)?];
         let block = |cell: [isize; 2]| cell.map(|k| k as usize / BLOCK);
         Some(corners.map(block))
@@ -33,7 +34,7 @@ impl Raster {
     }
 
     fn all_seen(&self) -> Seen {
-        let [columns, rows] = self.size;
+        let [columns, rows] = self.grid.size;
         let across = columns.div_ceil(BLOCK);
         let mut seen = Seen {
             about: Vec::with_capacity(columns * rows),
@@ -51,7 +52,7 @@ impl Raster {
     /// The range of the nearest return of a cell and those around it, m; infinite without one.
     fn nearest_about(&self, [x, y]: [isize; 2]) -> f64 {
         let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
-        let nearest = |[x, y]: [isize; 2]| Some(self.cells[self.index(x, y)?].nearest());
+        let nearest = |[x, y]: [isize; 2]| Some(self.cells[self.grid.index(x, y)?].nearest());
         around.filter_map(nearest).fold(f64::INFINITY, f64::min)
     }
 }

@@ -2,6 +2,7 @@
 
 mod about;
 mod extent;
+mod grid;
 mod lens;
 mod lines;
 pub(super) mod near;

@@ -38,8 +38,8 @@ impl Raster {
 
     /// Of a place that counts as seen and is behind the nearest return of its cell, how far behind it that may be, m.
     pub(super) fn behind_by_noise(&self, ray: &Vector3) -> Option<f64> {
-        let [x, y] = self.lens.project(ray).and_then(|at| self.cell(at))?;
-        let cell = &self.cells[self.index(x, y)?];
+        let [x, y] = self.lens.project(ray).and_then(|at| self.grid.cell(at))?;
+        let cell = &self.cells[self.grid.index(x, y)?];
         let (nearest, range) = (cell.nearest(), ray.norm());
         (nearest < range && range <= cell.clearly_behind).then_some(cell.behind_nearest - nearest)
     }
@@ -47,13 +47,13 @@ impl Raster {
     /// The cells with returns among that of a ray and those around it, each with how far right and below it is; none
     /// beside the view.
     fn around(&self, ray: &Vector3) -> impl Iterator<Item = ([isize; 2], usize)> {
-        let [columns, rows] = self.reach;
-        let middle = self.lens.project(ray).and_then(|at| self.cell(at));
+        let [columns, rows] = self.grid.reach();
+        let middle = self.lens.project(ray).and_then(|at| self.grid.cell(at));
         middle.into_iter().flat_map(move |[x, y]| {
             let steps =
                 (-rows..=rows).flat_map(move |dy| (-columns..=columns).map(move |dx| [dx, dy]));
             steps.filter_map(move |[dx, dy]| {
-                let cell = self.index(x + dx, y + dy)?;
+                let cell = self.grid.index(x + dx, y + dy)?;
                 (self.cells[cell].clearly_behind > 0.0).then_some(([dx, dy], cell))
             })
         })

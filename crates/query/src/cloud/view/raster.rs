@@ -3,46 +3,26 @@
 //! Directions are looked up in a raster over the view, of cells two pixels wide, and not among the
 //! measured directions: a query looks at hundreds of them.
 
-use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 use cloudtouch_geom::{Point3, Vector3};
 use nalgebra::UnitQuaternion;
 
-use super::extent::extent;
+use super::grid::Grid;
 use super::lens::Lens;
 use super::lines::Lines;
 use super::straight::Mean;
 
-/// Edge of a raster's cell in pixels: no cell between measured pixels is left empty by chance.
-const CELL_PIXELS: f64 = 2.0;
 /// Standard deviations of the measured surface that count as clearly behind it.
 pub(in crate::cloud) const CLEARLY: f64 = 3.0;
 /// Lines that are farther apart than so many of their pixels are lines.
 const APART: f64 = 1.5;
-/// One that lacks no more cells than that of a full turn goes all around.
-const LEAST_GAP_CELLS: f64 = 2.0;
-/// The first column of a full turn begins so many of its pixels before straight ahead: a part that no fraction is, so
-/// that no column is where cells meet, however many pixels wide these are.
-const ASIDE: f64 = 0.309_016_994_374_947_4;
-/// Cells of a raster at most, and columns or rows: beyond, they become wider.
-const MOST_CELLS: f64 = 1e7;
-const MOST_COLUMNS: f64 = 1e4;
 
 /// How far was seen in each direction of a view.
 #[derive(Debug)]
 pub(super) struct Raster {
     pub(super) lens: Lens,
-    low: [f64; 2],
-    pitch: f64,
-    /// Columns and rows.
-    pub(super) size: [usize; 2],
-    /// Cells up to half of one past the outermost pixels: the last of a row or a column may reach beyond.
-    span: [f64; 2],
-    /// Whether the last column is beside the first.
-    is_round: bool,
-    /// How many columns and rows of cells it takes to reach a pixel beside one.
-    pub(super) reach: [isize; 2],
+    pub(super) grid: Grid,
     // PERF: what is told of a cell is looked up at once.
     pub(super) cells: Vec<Cell>,
     /// The same in the mean.
@@ -100,9 +80,6 @@ impl Cell {
 impl Raster {
     /// Of the points measured, each with an upper bound of its standard deviations, m, in so many pixels, and of
     /// rays `beyond` which returns were left out.
-    ///
-    /// Cells are as large as pixels are, however many of these have no return: by the returns alone holes
-    /// would be the smaller the more of them there are.
     pub(super) fn new(
         (origin, turn, scanner): (&Point3, &UnitQuaternion<f64>, Option<f64>),
         measured: impl Iterator<Item = (Point3, f64)>,
@@ -117,121 +94,51 @@ impl Raster {
         let returns = rays.len();
         rays.extend(beyond.iter().map(|ray| (*ray, ray.norm(), 0.0)));
         let lens = Lens::of(rays.iter().map(|(ray, range, _)| (ray, *range)), (turn, scanner))?;
-        let place = |(number, (ray, range, clear)): (usize, &(Vector3, f64, f64))| {
-            Some((number, [range - clear, range + clear], lens.project(ray)?))
-        };
+        let place =
+            |(number, (ray, ..)): (usize, &(Vector3, f64, f64))| Some((number, lens.project(ray)?));
         let placed: Vec<_> = rays.iter().enumerate().filter_map(place).collect();
-        let [low, high] = extent(&lens, placed.iter().map(|(_, _, at)| *at));
-        let mut sides = [high[0] - low[0], high[1] - low[1]];
-        let pixel_count = (pixels[0] * pixels[1]).max(placed.len()).max(1) as f64;
-        let pitch_over = |[width, height]: [f64; 2]| {
-            let area = width * height;
-            (CELL_PIXELS * (area / pixel_count).sqrt())
-                .max((area / MOST_CELLS).sqrt())
-                .max(width.max(height) / MOST_COLUMNS)
-        };
-        let mut pitch = pitch_over(sides);
-        if !(pitch > 0.0 && pitch.is_finite()) {
-            return None;
-        }
-        let is_round =
-            matches!(lens, Lens::Panorama(_)) && sides[0] + LEAST_GAP_CELLS * pitch > TAU;
-        if is_round {
-            // Whether a full turn lacks a column is told by rounding, where one is straight behind.
-            sides[0] = TAU;
-            pitch = TAU / (TAU / pitch_over(sides)).round().max(1.0);
-        }
-        let steps = match lens {
-            Lens::Camera(_) => [pitch / CELL_PIXELS; 2],
-            Lens::Panorama(_) => steps_of_panorama(sides, pixels),
-        };
-        // A pixel's surface reaches beyond its middle: half a cell around the outermost ones.
-        let mut low = low.map(|v| v - 0.5 * pitch);
-        if is_round {
-            // None is outermost, and rounding would tell which is first where one is straight ahead, and in which cell
-            // one is that is where two meet.
-            low[0] = -ASIDE * steps[0];
-        }
-        let span = sides.map(|side| side / pitch + 1.0);
-        let mut size = span.map(|cells| cells.ceil() as usize);
-        if is_round {
-            size[0] = (TAU / pitch).round() as usize;
-        }
-        let count = size[0] * size[1];
-        let reach = steps.map(|step| (step / pitch).ceil().max(1.0) as isize);
-        let is_open = vec![false; if beyond.is_empty() { 0 } else { count }];
+        let grid = Grid::over(&lens, placed.iter().map(|(_, at)| *at), pixels)?;
+        let (count, [pixels_apart, lines_apart]) = (grid.count(), grid.steps);
         let mut raster = Self {
             lens,
-            low,
-            pitch,
-            size,
-            span,
-            is_round,
-            reach,
+            grid,
             cells: vec![Cell::EMPTY; count],
             means: vec![Mean::default(); count],
-            is_open,
-            lines: (steps[1] > APART * steps[0]).then(|| Lines::new(count, steps[1])),
+            is_open: vec![false; if beyond.is_empty() { 0 } else { count }],
+            lines: (lines_apart > APART * pixels_apart).then(|| Lines::new(count, lines_apart)),
             seen: OnceLock::new(),
         };
-        for (number, [before, behind], at) in placed {
-            let place = raster.cell(at).and_then(|at| Some((at, raster.index(at[0], at[1])?)));
-            if let Some((middle, cell)) = place {
-                raster.cells[cell].add([before, behind]);
-                let (ray, range, _) = &rays[number];
-                let distance = raster.lens.distance(ray, *range);
-                let aside = raster.place_in(at, middle);
-                raster.means[cell].add(aside, distance);
-                if number >= returns {
-                    raster.is_open[cell] = true;
-                }
-                if let Some(lines) = &mut raster.lines {
-                    lines.add(cell, at[1], behind);
-                }
-            }
+        for (number, at) in placed {
+            raster.add(at, &rays[number], number >= returns);
         }
         Some(raster)
     }
 
+    /// Takes a ray at a place of the view, with its range and how much nearer or farther is clearly so, m; beyond an open
+    /// one something may have been left out.
+    fn add(&mut self, at: [f64; 2], (ray, range, clear): &(Vector3, f64, f64), is_open: bool) {
+        let Some([x, y]) = self.grid.cell(at) else { return };
+        let Some(cell) = self.grid.index(x, y) else { return };
+        self.cells[cell].add([range - clear, range + clear]);
+        self.means[cell].add(self.grid.place_in(at, [x, y]), self.lens.distance(ray, *range));
+        if is_open {
+            self.is_open[cell] = true;
+        }
+        if let Some(lines) = &mut self.lines {
+            lines.add(cell, at[1], range + clear);
+        }
+    }
+
     /// How far apart pixels are, per metre of distance; `None` of a panorama, whose lines may be far apart.
     pub(super) fn pixel(&self) -> Option<f64> {
-        matches!(self.lens, Lens::Camera(_)).then_some(self.pitch / CELL_PIXELS)
+        matches!(self.lens, Lens::Camera(_)).then_some(self.grid.pixel())
     }
-
-    /// The cell of a place of the view; `None` outside of it.
-    pub(super) fn cell(&self, at: [f64; 2]) -> Option<[isize; 2]> {
-        let [x, y] = [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.pitch);
-        let is_within =
-            |v: f64, axis: usize| self.is_round && axis == 0 || v >= 0.0 && v < self.span[axis];
-        // What is just left of the first column of a round one is in the last.
-        (is_within(x, 0) && is_within(y, 1)).then_some([x.floor() as isize, y.floor() as isize])
-    }
-
-    /// Where a place of the view is in its cell, from the middle, in cells.
-    pub(super) fn place_in(&self, at: [f64; 2], cell: [isize; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.pitch - cell[axis] as f64 - 0.5)
-    }
-
-    pub(super) fn index(&self, x: isize, y: isize) -> Option<usize> {
-        let x = if self.is_round { x.rem_euclid(self.size[0] as isize) } else { x };
-        let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
-        (x < self.size[0] && y < self.size[1]).then_some(y * self.size[0] + x)
-    }
-}
-
-/// How far apart the pixels of a panorama are in azimuth and in elevation, rad: its lines, be they its rows or its
-/// columns, as makes these more alike.
-fn steps_of_panorama(extent: [f64; 2], [columns, rows]: [usize; 2]) -> [f64; 2] {
-    let of = |counts: [usize; 2]| {
-        [0, 1].map(|axis| extent[axis] / counts[axis].saturating_sub(1).max(1) as f64)
-    };
-    let unlike = |[p, q]: [f64; 2]| (p / q).ln().abs();
-    let both = [of([columns, rows]), of([rows, columns])];
-    if unlike(both[1]) < unlike(both[0]) { both[1] } else { both[0] }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use crate::cloud::view::seen::Sight;
 
@@ -281,7 +188,7 @@ mod tests {
             Raster::new((&origin, &turn, None), (0..1024 * 32).map(ray), &[], [1024, 32]).unwrap()
         });
         for raster in &rasters {
-            assert_eq!(raster.size, rasters[0].size);
+            assert_eq!(raster.grid.size, rasters[0].grid.size);
         }
     }
 

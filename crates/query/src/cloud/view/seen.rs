@@ -45,7 +45,7 @@ impl Raster {
         if self.lens.is_behind(ray) {
             return Sight::BehindCamera;
         }
-        let place = self.lens.project(ray).and_then(|at| Some((at, self.cell(at)?)));
+        let place = self.lens.project(ray).and_then(|at| Some((at, self.grid.cell(at)?)));
         let Some((at, [x, y])) = place else {
             return Sight::OutsideView;
         };
@@ -60,7 +60,7 @@ impl Raster {
             for dy in -ring..=ring {
                 let step = if dy.abs() == ring { 1 } else { 2 * ring.max(1) };
                 for dx in (-ring..=ring).step_by(step as usize) {
-                    if let Some(cell) = self.index(x + dx, y + dy) {
+                    if let Some(cell) = self.grid.index(x + dx, y + dy) {
                         let behind = self.cells[cell].clearly_behind;
                         let told = if ring == 0 { self.behind_rim(range, [x, y]) } else { behind };
                         farthest = farthest.max(told);
@@ -85,12 +85,12 @@ impl Raster {
     /// The range behind which something is hidden by part of a cell at least: behind the nearest return there, unless a
     /// surface recedes from before the cell to beyond it.
     fn behind_rim(&self, range: f64, [x, y]: [isize; 2]) -> f64 {
-        let Some(cell) = self.index(x, y) else { return 0.0 };
+        let Some(cell) = self.grid.index(x, y) else { return 0.0 };
         let Cell { behind_nearest: nearest, clearly_behind: farthest, .. } = self.cells[cell];
         let recedes = || {
             let before = nearest - STEADY * (farthest - nearest);
             let beside =
-                [[1, 0], [-1, 0], [0, 1], [0, -1]].map(|[dx, dy]| self.index(x + dx, y + dy));
+                [[1, 0], [-1, 0], [0, 1], [0, -1]].map(|[dx, dy]| self.grid.index(x + dx, y + dy));
             beside.into_iter().flatten().any(|cell| self.cells[cell].behind_nearest <= before)
         };
         if nearest < range && range <= farthest && recedes() {
@@ -103,36 +103,36 @@ impl Raster {
     /// Whether a range is behind all returns of a cell, by so little that it may be inside what they came from. The
     /// nearest alone would be passed by what lies on a surface that is seen at a low angle.
     fn is_close_behind(&self, range: f64, [x, y]: [isize; 2]) -> bool {
-        let behind = self.index(x, y).map_or(0.0, |cell| self.cells[cell].clearly_behind);
+        let behind = self.grid.index(x, y).map_or(0.0, |cell| self.cells[cell].clearly_behind);
         range > behind && range <= behind + CLOSE
     }
 
     /// Whether a place is clearly behind the surface that a cell and those around it are on, where that is even.
     fn is_behind_surface(&self, ray: &Vector3, at: [f64; 2], [x, y]: [isize; 2]) -> bool {
-        let Some(own) = self.index(x, y) else { return false };
+        let Some(own) = self.grid.index(x, y) else { return false };
         let (range, mut clear) = (ray.norm(), self.cells[own].clear());
         if range <= self.seen().about[own] + clear {
             return false;
         }
         let mut surface = Surface::default();
         for (dy, dx) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dy, dx))) {
-            if let Some(cell) = self.index(x + dx, y + dy) {
+            if let Some(cell) = self.grid.index(x + dx, y + dy) {
                 clear = clear.max(self.cells[cell].clear());
                 surface.add([dx, dy], self.means[cell]);
             }
         }
         let distance = self.lens.distance(ray, range);
         surface
-            .distance(clear, self.place_in(at, [x, y]))
+            .distance(clear, self.grid.place_in(at, [x, y]))
             .is_some_and(|surface| distance > surface + clear * distance / range)
     }
 
     /// The range clearly behind what two lines of a panorama have between them, where these are next to one another.
     fn behind_lines(&self, elevation: f64, [x, y]: [isize; 2]) -> Option<f64> {
-        let cell = |y| self.index(x, y);
+        let cell = |y| self.grid.index(x, y);
         // However far apart they are: those of some scanners are the farther apart the farther down they look.
         let down = (0..=y).rev().filter_map(cell);
-        let up = (y..self.size[1] as isize).filter_map(cell);
+        let up = (y..self.grid.size[1] as isize).filter_map(cell);
         self.lines.as_ref()?.behind(elevation, down, up)
     }
 }
