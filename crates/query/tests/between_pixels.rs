@@ -1,18 +1,14 @@
 //! What lies between the pixels of an image: there a surface is where it goes on to, and not as far away as the farther of
 //! two pixels.
 
-use cloudtouch::{Cloud, CloudSettings, Mesh, Mode, Verdict};
-use cloudtouch_geom::{Point3, PointCloud, Pose, Vector3, seed};
+use cloudtouch::{Cloud, CloudSettings, Mode, Verdict};
+use cloudtouch_geom::{PointCloud, Pose, Vector3, seed};
 use cloudtouch_noise::SensorModel;
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
 
-use crate::common::query;
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(Vector3::new(x, y, z))
-}
+use crate::common::{at, mesh, query};
 
 /// A floor and a wall, from a camera so high over the floor, m, that looks down by an angle, rad.
 fn image([width, height]: [usize; 2], above: f64, camera_pose: &Pose) -> PointCloud {
@@ -25,25 +21,17 @@ fn image([width, height]: [usize; 2], above: f64, camera_pose: &Pose) -> PointCl
     };
     let floor = scene::moved(&scene::cuboid([12.0, 0.1, 12.0]), &at(0.0, above + 0.05, 6.5));
     let wall = scene::moved(&scene::cuboid([12.0, 6.0, 0.1]), &at(0.0, 0.0, 6.0));
-    let [floor, wall] = [floor, wall].map(|mesh| ExactMesh::new(&mesh));
+    let [floor, wall] = [floor, wall].map(|part| ExactMesh::new(&part));
     camera.scan(&[&floor, &wall], camera_pose, 3)
-}
-
-/// Every second row of an image, or every third.
-fn thinned(image: &PointCloud, step: usize) -> PointCloud {
-    let (width, _) = image.image_size.expect("an image");
-    let points: Vec<Point3> = image.points.chunks(width).step_by(step).flatten().copied().collect();
-    let image_size = Some((width, points.len() / width));
-    PointCloud { points, image_size, ..image.clone() }
 }
 
 /// Of bodies wholly or nearly in the floor, and over it, how many are free.
 fn free_in_and_over(step: usize, size: [usize; 2], body: [f64; 3], deep: f64) -> [usize; 2] {
     let mut free = [0; 2];
-    let body_mesh = Mesh::prepare(&scene::cuboid(body)).expect("a box");
+    let body_mesh = mesh(&scene::cuboid(body));
     for (above, down) in [(0.3, 0.09), (0.6, 0.26), (1.2, 0.6)] {
         let camera_pose = Pose::from_translation_rpy(Vector3::zeros(), [-down, 0.0, 0.0]);
-        let image = thinned(&image(size, above, &camera_pose), step);
+        let image = image(size, above, &camera_pose).every(1, step).expect("an image");
         let sensor = SensorModel::TimeOfFlight { std: 0.001, per_metre: 0.001 };
         let cloud = Cloud::prepare(&image, &CloudSettings::new(sensor)).expect("a usable image");
         for index in 0..20 {

@@ -2,11 +2,11 @@
 
 use cloudtouch_geom::{Point3, PointCloud};
 
+use super::range::AT_IT;
+
 /// So many rows that repeat the place of the sensor, or the origin of the file, stand for no return; of an image, whose rows
 /// without one are there, a single one does.
 const PLACEHOLDERS: usize = 3;
-/// A row that is no farther from it is at a place, m.
-const AT_IT: f64 = 1e-6;
 
 /// Drops what is no return, or is written for none: some drivers write zeros, or the place of the sensor.
 pub(super) fn drop_missing(cloud: &PointCloud, kept: &mut Vec<usize>) {
@@ -14,8 +14,8 @@ pub(super) fn drop_missing(cloud: &PointCloud, kept: &mut Vec<usize>) {
     let least = if cloud.is_image() { 1 } else { PLACEHOLDERS };
     let is_zero = |index: &usize| cloud.points[*index] == Point3::origin();
     drop_repeated(kept, least, is_zero);
-    if let Some(pose) = &cloud.sensor_pose {
-        let place = Point3::from(pose.translation());
+    if cloud.sensor_pose.is_some() {
+        let place = cloud.sensor_origin();
         let is_at_it = |index: &usize| (cloud.points[*index] - place).norm() <= AT_IT;
         drop_repeated(kept, least, is_at_it);
     }

@@ -7,7 +7,7 @@ use super::FilterSettings;
 /// No camera and no laser scanner sees nearer, m.
 const NEAREST: f64 = 0.1;
 /// Returns that are nearer than this to the place of a sensor are at it, m.
-const AT_IT: f64 = 1e-6;
+pub(super) const AT_IT: f64 = 1e-6;
 
 /// Whether a row of an image is a return that the sensor there saw: some drivers write zeros for none, or the place of the
 /// sensor, which may be rounded.

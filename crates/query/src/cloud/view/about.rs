@@ -3,6 +3,8 @@
 use cloudtouch_geom::Vector3;
 
 use super::raster::{Raster, Seen};
+use super::seen::HOLE_CELLS;
+use super::straight::REACH;
 
 /// Cells along the edge of a block, of which the one that was seen least far tells.
 const BLOCK: usize = 8;
@@ -50,10 +52,9 @@ impl Raster {
     }
 
     /// The range of the nearest return of a cell and those around it, m; infinite without one.
-    fn nearest_about(&self, [x, y]: [isize; 2]) -> f64 {
-        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
-        let nearest = |[x, y]: [isize; 2]| Some(self.cells[self.grid.index(x, y)?].nearest());
-        around.filter_map(nearest).fold(f64::INFINITY, f64::min)
+    fn nearest_about(&self, cell: [isize; 2]) -> f64 {
+        let around = self.grid.around(cell, [HOLE_CELLS.max(REACH); 2]);
+        around.map(|(_, cell)| self.cells[cell].nearest()).fold(f64::INFINITY, f64::min)
     }
 }
 

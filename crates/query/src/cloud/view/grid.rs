@@ -110,6 +110,16 @@ impl Grid {
         let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
         (x < self.size[0] && y < self.size[1]).then_some(y * self.size[0] + x)
     }
+
+    /// A cell and those around it, up to so many columns and rows away, each with how far right and below it is.
+    pub(super) fn around(
+        &self,
+        [x, y]: [isize; 2],
+        [columns, rows]: [isize; 2],
+    ) -> impl Iterator<Item = ([isize; 2], usize)> {
+        let aside = (-rows..=rows).flat_map(move |dy| (-columns..=columns).map(move |dx| [dx, dy]));
+        aside.filter_map(move |[dx, dy]| Some(([dx, dy], self.index(x + dx, y + dy)?)))
+    }
 }
 
 /// How wide cells are over such a part of a view with so many pixels.

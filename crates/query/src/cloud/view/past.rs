@@ -47,15 +47,9 @@ impl Raster {
     /// The cells with returns among that of a ray and those around it, each with how far right and below it is; none
     /// beside the view.
     fn around(&self, ray: &Vector3) -> impl Iterator<Item = ([isize; 2], usize)> {
-        let [columns, rows] = self.grid.reach();
         let middle = self.lens.project(ray).and_then(|at| self.grid.cell(at));
-        middle.into_iter().flat_map(move |[x, y]| {
-            let steps =
-                (-rows..=rows).flat_map(move |dy| (-columns..=columns).map(move |dx| [dx, dy]));
-            steps.filter_map(move |[dx, dy]| {
-                let cell = self.grid.index(x + dx, y + dy)?;
-                (self.cells[cell].clearly_behind > 0.0).then_some(([dx, dy], cell))
-            })
-        })
+        let around =
+            middle.into_iter().flat_map(|middle| self.grid.around(middle, self.grid.reach()));
+        around.filter(|(_, cell)| self.cells[*cell].clearly_behind > 0.0)
     }
 }

@@ -3,11 +3,11 @@
 use cloudtouch_geom::Vector3;
 
 use super::raster::{Cell, Raster};
-use super::straight::Surface;
+use super::straight::{REACH, Surface};
 
 /// A place is in a hole when nothing was measured so many cells around its own: every hole eight pixels wide has
 /// such places, and smaller ones are specks that hardly a surface hides in.
-const HOLE_CELLS: isize = 1;
+pub(super) const HOLE_CELLS: isize = 1;
 /// A surface recedes across a cell when it did so before it at this part of the rate: of two directions one has half.
 const STEADY: f64 = 0.4;
 /// What is no farther behind a return, m, may be inside the thing it came from: few things on a table are thicker.
@@ -115,11 +115,9 @@ impl Raster {
             return false;
         }
         let mut surface = Surface::default();
-        for (dy, dx) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dy, dx))) {
-            if let Some(cell) = self.grid.index(x + dx, y + dy) {
-                clear = clear.max(self.cells[cell].clear());
-                surface.add([dx, dy], self.means[cell]);
-            }
+        for (aside, cell) in self.grid.around([x, y], [REACH; 2]) {
+            clear = clear.max(self.cells[cell].clear());
+            surface.add(aside, self.means[cell]);
         }
         let distance = self.lens.distance(ray, range);
         surface

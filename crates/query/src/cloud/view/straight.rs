@@ -4,8 +4,10 @@
 //! between two rows is neither as near as the one nor as far as the other. On a plane one over the distance goes evenly
 //! over the view: along the axis of a camera for all of it, from a scanner over so few cells.
 
-/// Cells about one that are fitted, itself too, and at least.
-const MOST: usize = 9;
+/// How many cells away those about one are that are fitted with it.
+pub(super) const REACH: isize = 1;
+/// Cells that are fitted, at most and at least.
+const MOST: usize = (2 * REACH as usize + 1).pow(2);
 const LEAST: usize = 4;
 /// Cells are no plane where one is farther from it than their noise and this part of what they differ by.
 const BENT: f64 = 0.05;
