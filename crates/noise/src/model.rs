@@ -136,48 +136,67 @@ impl NoiseModel {
     ) -> Refined {
         let points = neighborhoods.points();
         assert_eq!(sensor.len(), points.len(), "one sensor covariance for each point");
-        let count = self.neighbors();
+        let is_by_surface = self.settings.combination == Combination::SurfacePosterior;
         scratch.near_representatives.clear();
-        let around = match (representatives, self.settings.combination) {
+        let around = match representatives {
             // Mostly the nearest of all points tell no more than how dense they are, which is known.
-            (Some(representatives), Combination::SurfacePosterior) => {
+            Some(representatives) if is_by_surface => {
                 scratch.neighbors.clear();
                 // Which points stand for the others hangs on all of them.
                 scratch.reach = f64::INFINITY;
                 representatives.spacing(index, neighborhoods, sensor)
             }
             _ => {
+                let count = self.neighbors();
                 neighborhoods.look_around(index, count, scratch);
                 scratch.reach = reach(&scratch.neighbors, count);
                 spacing_around(&scratch.neighbors)
             }
         };
         let spacing = around.unwrap_or(0.0).min(spacing_cap);
-        let unfitted = |covariance| Refined {
-            point: UncertainPoint { mean: points[index], covariance },
-            spacing,
-            normal: None,
-        };
+        if is_by_surface
+            && let Some(around) = around
+            && let Some(on_surface) = posterior(
+                index,
+                (neighborhoods, representatives, sensor),
+                [around, spacing_cap],
+                &self.settings.posterior,
+                scratch,
+            )
+        {
+            return on_surface;
+        }
+        let covariance =
+            self.without_surface(index, neighborhoods, sensor, [spacing, spacing_cap], scratch);
+        Refined { point: UncertainPoint { mean: points[index], covariance }, spacing, normal: None }
+    }
+
+    /// The noise of a point that stays where it was measured, with the neighbours in `scratch`; its spacing and the most
+    /// that may be are in m.
+    fn without_surface(
+        &self,
+        index: usize,
+        neighborhoods: &Neighborhoods,
+        sensor: &SensorNoise,
+        [spacing, spacing_cap]: [f64; 2],
+        scratch: &mut Scratch,
+    ) -> Covariance {
+        let own = &sensor[index];
         match self.settings.combination {
             Combination::Precision => {
                 let psi = self.sampling_error(index, neighborhoods, spacing_cap, scratch);
-                unfitted(psi.map_or(sensor[index], |psi| parallel(&sensor[index], &psi)))
+                psi.map_or(*own, |psi| parallel(own, &psi))
             }
             Combination::Convolution => {
                 let alone = if spacing_cap.is_finite() { spacing_cap } else { 0.0 };
                 let psi = self
                     .sampling_error(index, neighborhoods, spacing_cap, scratch)
                     .unwrap_or(Covariance::isotropic(alone * alone));
-                unfitted(sensor[index].sum(&psi))
+                own.sum(&psi)
             }
             Combination::SurfacePosterior => {
-                let settings = &self.settings.posterior;
-                let disc = (settings.disc_std * spacing).powi(2);
-                let measured = (neighborhoods, representatives, sensor);
-                let found = around.and_then(|around| {
-                    posterior(index, measured, [around, spacing_cap], settings, scratch)
-                });
-                found.unwrap_or_else(|| unfitted(sensor[index].sum(&Covariance::isotropic(disc))))
+                let disc = (self.settings.posterior.disc_std * spacing).powi(2);
+                own.sum(&Covariance::isotropic(disc))
             }
         }
     }

@@ -8,6 +8,7 @@ mod add;
 mod compare;
 mod cross;
 mod extent;
+mod in_mesh;
 mod measure;
 mod run;
 mod swept;

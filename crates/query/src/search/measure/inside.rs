@@ -9,11 +9,12 @@ use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::classifier::Clock;
-use crate::cloud::{Cloud, Surfel};
+use crate::cloud::Surfel;
 use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::{Mesh, Sides};
 
 use super::deepest_first::DeepestFirst;
+use crate::search::in_mesh::InMesh;
 use crate::search::wrench::{Wrench, force_at};
 
 /// The point of a cloud that is most clearly inside a closed mesh.
@@ -73,9 +74,7 @@ pub(crate) struct Looked {
 
 /// A cloud, a mesh that its points may be inside of, and what is known of the places between them so far.
 struct Within<'a> {
-    cloud: &'a Cloud,
-    mesh: &'a Mesh,
-    mesh_from_cloud: &'a Pose,
+    bodies: &'a InMesh<'a>,
     sides: Sides<'a>,
     /// PERF: of a leaf that may hold a point inside, most hold none: these need no fit.
     clear: Sides<'a>,
@@ -95,58 +94,18 @@ struct LeafWithin {
 /// Looks for points of a cloud inside the mesh it is asked about, until one is clearly so, the time is
 /// over, or `is_enough` of an upper bound on the deviations, whatever the search between the surfaces finds; finds nothing where neither body is a mesh.
 pub(crate) fn look_inside(
-    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    bodies: (BodyRef<'_>, BodyRef<'_>),
     a_from_b: &Pose,
     clock: &Clock,
     is_enough: impl Fn(f64) -> bool,
 ) -> Looked {
-    let here = Pose::identity();
-    match (a, b) {
-        (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => {
-            deepest(cloud, mesh, (&a_from_b.inverse(), a_from_b), clock, is_enough)
-        }
-        (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => {
-            deepest(cloud, mesh, (a_from_b, &here), clock, is_enough)
-        }
-        _ => Looked::default(),
-    }
-}
-
-/// Whether a leaf of the cloud alone holds a point inside the mesh so clearly that that is enough: then
-/// [`look_inside`] comes by what is.
-pub(crate) fn is_enough_of_leaf(
-    leaf: NodeId,
-    (a, b): (BodyRef<'_>, BodyRef<'_>),
-    a_from_b: &Pose,
-    is_enough: impl Fn(f64) -> bool,
-) -> bool {
-    let (cloud, mesh, mesh_from_cloud) = match (a, b) {
-        (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => (cloud, mesh, a_from_b.inverse()),
-        (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => (cloud, mesh, *a_from_b),
-        _ => return false,
-    };
     let mut looked = Looked::default();
-    if mesh.has_solids() {
-        looked.look_into(leaf, &mut Within::new(cloud, mesh, &mesh_from_cloud));
-    }
-    is_enough(looked.deviations_given(MOST_DEVIATIONS))
-}
-
-fn deepest(
-    cloud: &Cloud,
-    mesh: &Mesh,
-    (mesh_from_cloud, a_from_mesh): (&Pose, &Pose),
-    clock: &Clock,
-    is_enough: impl Fn(f64) -> bool,
-) -> Looked {
-    let mut looked = Looked::default();
-    if !mesh.has_solids() {
-        return looked;
-    }
+    let Some(bodies) = InMesh::of(bodies, a_from_b) else { return looked };
+    let InMesh { cloud, mesh, a_from_mesh, .. } = &bodies;
     let mut deepest = None;
-    let mut within = Within::new(cloud, mesh, mesh_from_cloud);
+    let mut within = Within::new(&bodies);
     // PERF: what is deepest comes first, since a point that is clearly inside spares all others their fits.
-    let leaves = looked.leaves_within(cloud, mesh, mesh_from_cloud, clock).into_iter();
+    let leaves = looked.leaves_within(&bodies, clock).into_iter();
     let (inside, others): (Vec<_>, Vec<_>) =
         leaves.partition(|leaf| mesh.is_surely_inside(&leaf.middle));
     let middles: Vec<Point3> = inside.iter().map(|leaf| leaf.middle).collect();
@@ -168,7 +127,7 @@ fn deepest(
     let Within { mut scratch, .. } = within;
     looked.deepest = looked.deepest.zip(deepest).map(|(inside, piece)| {
         let told = cloud.prepared().told(piece, &mut scratch);
-        let outward = mesh_from_cloud.inverse().transform_vector(&inside.outward);
+        let outward = bodies.mesh_from_cloud.inverse().transform_vector(&inside.outward);
         Inside {
             std: told.point.covariance.std_along(&outward),
             place: a_from_mesh.transform_point(&inside.place),
@@ -179,10 +138,25 @@ fn deepest(
     looked
 }
 
+/// Whether a leaf of the cloud alone holds a point inside the mesh so clearly that that is enough: then
+/// [`look_inside`] comes by what is.
+pub(crate) fn is_enough_of_leaf(
+    leaf: NodeId,
+    bodies: (BodyRef<'_>, BodyRef<'_>),
+    a_from_b: &Pose,
+    is_enough: impl Fn(f64) -> bool,
+) -> bool {
+    let mut looked = Looked::default();
+    if let Some(bodies) = InMesh::of(bodies, a_from_b) {
+        looked.look_into(leaf, &mut Within::new(&bodies));
+    }
+    is_enough(looked.deviations_given(MOST_DEVIATIONS))
+}
+
 impl<'a> Within<'a> {
-    fn new(cloud: &'a Cloud, mesh: &'a Mesh, mesh_from_cloud: &'a Pose) -> Self {
-        let [sides, clear] = [Sides::of(mesh), Sides::of(mesh)];
-        Self { cloud, mesh, mesh_from_cloud, sides, clear, scratch: Scratch::default() }
+    fn new(bodies: &'a InMesh<'a>) -> Self {
+        let [sides, clear] = [Sides::of(bodies.mesh), Sides::of(bodies.mesh)];
+        Self { bodies, sides, clear, scratch: Scratch::default() }
     }
 }
 
@@ -224,13 +198,8 @@ impl Looked {
     }
 
     /// The leaves that may hold a point inside, as far as their surroundings tell.
-    fn leaves_within(
-        &mut self,
-        cloud: &Cloud,
-        mesh: &Mesh,
-        mesh_from_cloud: &Pose,
-        clock: &Clock,
-    ) -> Vec<LeafWithin> {
+    fn leaves_within(&mut self, bodies: &InMesh<'_>, clock: &Clock) -> Vec<LeafWithin> {
+        let InMesh { cloud, mesh, mesh_from_cloud, .. } = bodies;
         let mut leaves = Vec::new();
         cloud.tree().visit_nodes(|node| {
             self.nodes_visited += 1;
@@ -254,7 +223,8 @@ impl Looked {
 
     /// Looks at the points of a leaf; which piece is the deepest of all so far, where it is one of these.
     fn look_into(&mut self, leaf: NodeId, within: &mut Within<'_>) -> Option<u32> {
-        let Within { cloud, mesh, mesh_from_cloud, sides, clear, scratch } = within;
+        let Within { bodies, sides, clear, scratch } = within;
+        let InMesh { cloud, mesh, mesh_from_cloud, .. } = bodies;
         let shift = cloud.tree().node(leaf).map_or(0.0, |node| node.shift());
         let mut deepest = None;
         let computed = cloud.visit_some_of_leaf(

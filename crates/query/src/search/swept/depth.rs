@@ -4,9 +4,8 @@ use cloudtouch_bvh::Visit;
 use cloudtouch_geom::{Drift, Point3, Pose};
 
 use crate::body::BodyRef;
-use crate::cloud::Cloud;
 use crate::judge::MOST_DEVIATIONS;
-use crate::mesh::Mesh;
+use crate::search::in_mesh::InMesh;
 use crate::stats::Stats;
 
 /// A way is looked at in so many halvings before it is looked at closer.
@@ -16,36 +15,17 @@ const HALVINGS: u32 = 4;
 /// a closed mesh. No place gets deeper by more than it drifts. [`MOST_DEVIATIONS`] outweigh everything
 /// else. Local frames.
 pub(crate) fn greatest_depth(
-    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    bodies: (BodyRef<'_>, BodyRef<'_>),
     a_from_b: &Pose,
     drift: &Drift,
     is_enough: impl Fn(f64) -> bool,
     stats: &mut Stats,
 ) -> f64 {
-    let here = Pose::identity();
-    match (a, b) {
-        (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => {
-            deepest((cloud, &here), (mesh, a_from_b), &drift.inverse(), is_enough, stats)
-        }
-        (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => {
-            deepest((cloud, a_from_b), (mesh, &here), drift, is_enough, stats)
-        }
-        _ => 0.0,
-    }
-}
-
-/// Of a cloud that drifts so, as the mesh sees it.
-fn deepest(
-    (cloud, a_from_cloud): (&Cloud, &Pose),
-    (mesh, a_from_mesh): (&Mesh, &Pose),
-    drift: &Drift,
-    is_enough: impl Fn(f64) -> bool,
-    stats: &mut Stats,
-) -> f64 {
     let mut most = 0.0;
-    if !mesh.has_solids() {
-        return most;
-    }
+    let Some(bodies) = InMesh::of(bodies, a_from_b) else { return most };
+    let InMesh { cloud, mesh, a_from_cloud, a_from_mesh, .. } = bodies;
+    // Of the cloud, as the mesh sees it.
+    let drift = if bodies.mesh_is_a { *drift } else { drift.inverse() };
     let mesh_from_a = a_from_mesh.inverse();
     let to_mesh = |in_a: &Point3| mesh_from_a.transform_point(in_a);
     // What is outside all along its way, and all about it, does not get inside.
