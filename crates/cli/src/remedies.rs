@@ -96,6 +96,7 @@ pub(crate) fn of_warning(warning: &Warning) -> Option<&'static str> {
         }
         Warning::SensorRange { .. } => "--sensor auto, --cloud-unit, --depth-scale",
         Warning::SensorLayout { .. } => "--sensor auto",
+        Warning::NoImage { .. } => "--outliers 8,3",
         Warning::TakenForRobot { .. } => "--padding, in query --robot-padding",
         Warning::Unseen { .. } | Warning::CloseBehind { .. } => "--max-unseen",
         Warning::RejectBelowLeast { .. } => "--reject",

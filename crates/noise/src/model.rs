@@ -168,7 +168,12 @@ impl NoiseModel {
         }
         let covariance =
             self.without_surface(index, neighborhoods, sensor, [spacing, spacing_cap], scratch);
-        Refined { point: UncertainPoint { mean: points[index], covariance }, spacing, normal: None }
+        Refined {
+            point: UncertainPoint { mean: points[index], covariance },
+            spacing,
+            normal: None,
+            shared: 0.0,
+        }
     }
 
     /// The noise of a point that stays where it was measured, with the neighbours in `scratch`; its spacing and the most
@@ -250,6 +255,7 @@ impl NoiseModel {
             },
             spacing,
             normal: Some(normal),
+            shared: 0.0,
         }
     }
 

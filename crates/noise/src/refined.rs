@@ -11,6 +11,9 @@ pub struct Refined {
     pub spacing: f64,
     /// Normal of the fitted surface, of either sign; `None` where none was fitted.
     pub normal: Option<UnitVector3>,
+    /// How much of its variance along the normal is an error that its neighbours share, from 0 to 1: noise that is
+    /// stated and does not scatter them, as the cells of a grid are off a wall along it.
+    pub shared: f64,
 }
 
 /// How far refinement can go, without looking at neighbours.

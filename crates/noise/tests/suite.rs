@@ -12,4 +12,5 @@ mod posterior;
 mod reach;
 mod representatives;
 mod sensors;
+mod shared;
 mod sigma;

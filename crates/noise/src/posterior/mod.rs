@@ -94,13 +94,13 @@ pub(crate) fn posterior(
         }
         possible_variance((0..patch.len()).map(|rank| patch.offset(rank)), &surface.normal)
     });
-    let point = given_surface(
+    let (point, shared) = given_surface(
         (&points[index], own, std),
         (&surface, &patch, back),
         [around, apart, spacing],
         settings,
     );
-    Some(Refined { point, spacing, normal: Some(surface.normal) })
+    Some(Refined { point, spacing, normal: Some(surface.normal), shared })
 }
 
 /// Whether a point whose noise has this variance along the normal, m², is so near its surface that it is of it.
@@ -126,7 +126,7 @@ fn given_surface(
     (surface, patch, back): (&Surface, &Patch, Vector3),
     [around, apart, spacing]: [f64; 3],
     settings: &PosteriorSettings,
-) -> UncertainPoint {
+) -> (UncertainPoint, f64) {
     let error = &settings.surface_error;
     let noise = own.variance_along(&surface.normal);
     let mut prior = variance_of(surface, error, noise);
@@ -143,16 +143,17 @@ fn given_surface(
     let stays = (1.0 - weight).powi(2);
     let stays_noisy = stays * (error.own_noise + (1.0 - error.own_noise) * stays.powi(3)) * noise;
     let stated = if is_trusted { error.sharp + (1.0 - error.sharp) * blur } else { 1.0 };
-    let along = (stated * (weight * weight * prior + stays_noisy)).min(noise);
+    let along = (stated * (weight * weight * prior + stays_noisy) + surface.shared).min(noise);
     let turned = (error.turn * surface.tilt).min(1.0) * std;
     let across = (settings.disc_std * spacing).hypot(turned);
     let normal = surface.normal.into_inner();
     let room = (settings.most_shift * std).powi(2) - shift * shift;
     let back = limited(back, room);
-    UncertainPoint {
+    let point = UncertainPoint {
         mean: measured + normal * shift + back,
         covariance: disc(&surface.normal, along, across, apart, settings),
-    }
+    };
+    (point, if along > 0.0 { (surface.shared / along).min(1.0) } else { 0.0 })
 }
 
 /// How far noise of this standard deviation (m) is from small beside a spacing (m), up to 1.

@@ -49,6 +49,8 @@ pub(crate) struct Surface {
     pub(crate) bend: f64,
     /// What the noise does not explain of the variance of the residuals, m².
     pub(crate) misfit: f64,
+    /// What the residuals do not show of the noise, beyond chance: an error that the neighbours share, m².
+    pub(crate) shared: f64,
     /// What the residuals of a larger neighbourhood vary by beyond noise and chance, as far as this one
     /// may hide it, m².
     pub(crate) suspected: f64,
@@ -206,6 +208,7 @@ fn measured<S: Machine>(machine: S, patch: &Patch, plane: &Plane) -> Option<Surf
     let [height, on_a, on_b, _] = coefficients;
     let across = frame.normal - frame.tangents[0] * on_a - frame.tangents[1] * on_b;
     let normal = UnitVector3::new_normalize(across);
+    let reach = patch.offset(patch.len() - 1).norm_squared();
     Some(Surface {
         normal,
         height: height * normal.dot(&frame.normal),
@@ -215,6 +218,7 @@ fn measured<S: Machine>(machine: S, patch: &Patch, plane: &Plane) -> Option<Surf
         hidden: error.chance,
         bend: error.bend,
         misfit: error.beyond.max(0.0),
+        shared: error.shared(patch.own_variance(&normal), reach),
         suspected: 0.0,
         disagreement: 0.0,
         tilt: 0.0,

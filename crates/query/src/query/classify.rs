@@ -24,6 +24,7 @@ pub(super) fn ask_classifier(
     stats: &mut Stats,
 ) -> Result<Misclassified, QueryError> {
     let patches = patches((a, b), a_from_b, found, task.settings.max_mesh_parts)?;
+    let Some(patches) = patches else { return Ok(Misclassified::NOTHING) };
     if patches.is_empty() {
         return Ok(Misclassified::NOT_ASKED);
     }

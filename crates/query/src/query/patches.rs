@@ -18,6 +18,9 @@ const MOST_PATCHES: usize = 3;
 const FURTHER_DEVIATIONS: f64 = 1.5;
 /// ... nor, but for the least, about one with so many.
 const CLEARLY_FREE: f64 = 3.5;
+/// Nor about one whose errors are rather those of all samples there: a classifier takes them for each one's own, by which
+/// surfaces that are all off by as much seem to be parted.
+const MOST_SHARED: f64 = 0.5;
 /// Places whose deviations differ by less than about this are as near as each other.
 const TIED: f64 = 1e-6;
 /// Points of one cloud in a patch, at most.
@@ -41,16 +44,23 @@ struct Seed {
     spacing: f64,
 }
 
-/// The patches of a search, the least apart first, no two of which have their middles within reach.
+/// The patches of a search, the least apart first, no two of which have their middles within reach; `None` where no
+/// place is one that a classifier could say anything of.
 pub(super) fn patches(
     (a, b): (BodyRef<'_>, BodyRef<'_>),
     a_from_b: &Pose,
     found: &Found<'_>,
     max_parts: usize,
-) -> Result<Vec<PairPoints>, SubdivisionError> {
+) -> Result<Option<Vec<PairPoints>>, SubdivisionError> {
     let here = Pose::identity();
+    let findings = findings(found);
+    let own: Vec<&Finding> =
+        findings.iter().copied().filter(|f| f.nearest.shared <= MOST_SHARED).collect();
+    if own.is_empty() && !findings.is_empty() {
+        return Ok(None);
+    }
     let mut patches = Vec::new();
-    for seed in seeds((a, b), found) {
+    for seed in seeds((a, b), &own) {
         let patch = PairPoints {
             a: around(&seed, a, &here, max_parts)?,
             b: around(&seed, b, a_from_b, max_parts)?,
@@ -61,14 +71,11 @@ pub(super) fn patches(
             patches.push(patch);
         }
     }
-    Ok(patches)
+    Ok(Some(patches))
 }
 
-fn seeds((a, b): (BodyRef<'_>, BodyRef<'_>), found: &Found<'_>) -> Vec<Seed> {
-    let std_of = |body: BodyRef<'_>, piece| match body {
-        BodyRef::Cloud(cloud) => cloud.sensor_std(piece),
-        BodyRef::Mesh(_) => 0.0,
-    };
+/// What was found about as near as the nearest, that first.
+fn findings<'f>(found: &'f Found<'_>) -> Vec<&'f Finding> {
     let most = found.deviations_up_to(FURTHER_DEVIATIONS, CLEARLY_FREE);
     let mut findings: Vec<&Finding> =
         found.findings.iter().filter(|f| f.meeting.deviations <= most).collect();
@@ -81,6 +88,14 @@ fn seeds((a, b): (BodyRef<'_>, BodyRef<'_>), found: &Found<'_>) -> Vec<Seed> {
         let [(less, of_f), (more, of_g)] = [f, g].map(|finding| key(finding));
         less.total_cmp(&more).then(of_f.cmp(&of_g))
     });
+    findings
+}
+
+fn seeds((a, b): (BodyRef<'_>, BodyRef<'_>), findings: &[&Finding]) -> Vec<Seed> {
+    let std_of = |body: BodyRef<'_>, piece| match body {
+        BodyRef::Cloud(cloud) => cloud.sensor_std(piece),
+        BodyRef::Mesh(_) => 0.0,
+    };
     let mut seeds: Vec<Seed> = Vec::new();
     for finding in findings {
         let [of_a, of_b] = finding.nearest.between;

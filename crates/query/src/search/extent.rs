@@ -33,7 +33,8 @@ struct Counted<'f, 'a> {
     deviations: f64,
     /// How near it is beside the nearest, from 0 to 1.
     near: f64,
-    /// How surely it is on one side of the other surface, from 0 to 1; less than 0 inside of a closed mesh.
+    /// How surely it is on one side of the other surface, from 0 to 1; less than 0 inside of a closed mesh. Less where
+    /// those about it are off by what it is off: they say it once.
     side: f64,
 }
 
@@ -94,9 +95,10 @@ impl Found<'_> {
         let mut all = Wrench::zeros();
         self.visit(facing, |piece| {
             let Counted { leaf, place, deviations, near, side } = piece;
+            let alone = 1.0 - leaf.surfels[place].shared;
             let is_on_ramp = near < 1.0;
             let of_piece = facing.deviations_by_pose((leaf, place), deviations);
-            all += of_piece * (2.0 * normal::density(deviations) * side.signum() * near);
+            all += of_piece * (2.0 * normal::density(deviations) * alone * side.signum() * near);
             if is_on_ramp {
                 let share = (deviations - self.deviations) / window;
                 let of_share = (of_piece - least - of_window * share) / window;
@@ -118,8 +120,9 @@ impl Found<'_> {
                 let deviations = squared.sqrt();
                 let share = (deviations - self.deviations) / window;
                 let near = ((1.0 - share) / (1.0 - FULL)).clamp(0.0, 1.0);
-                if near > 0.0 {
-                    let side = facing.side(leaf, place, deviations);
+                let alone = 1.0 - leaf.surfels[place].shared;
+                if near > 0.0 && alone > 0.0 {
+                    let side = alone * facing.side(leaf, place, deviations);
                     visit(Counted { leaf, place, deviations, near, side });
                 }
             }

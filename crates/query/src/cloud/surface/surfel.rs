@@ -22,6 +22,8 @@ pub(crate) struct Surfel {
     pub across: f64,
     /// Unit normal of the surface there, of either sign, where one was fitted.
     pub normal: Option<Vector3>,
+    /// How much of that variance the pieces beside it are off by too, from 0 to 1.
+    pub shared: f64,
 }
 
 /// Whether a piece of surface ends at another face.
@@ -41,7 +43,7 @@ const ROUNDING: f64 = 1e-9;
 impl Surfel {
     /// As it was fitted.
     pub(crate) fn new(index: u32, fit: &Refined) -> Self {
-        let Refined { point, spacing, normal } = *fit;
+        let Refined { point, spacing, normal, shared } = *fit;
         let variance = |normal: UnitVector3| point.covariance.variance_along(&normal);
         Self {
             index,
@@ -51,6 +53,7 @@ impl Surfel {
             most_variance: point.covariance.max_std().powi(2) * (1.0 + ROUNDING),
             across: normal.map_or(0.0, variance),
             normal: normal.map(UnitVector3::into_inner),
+            shared,
         }
     }
 

@@ -53,8 +53,16 @@ impl Raster {
 
     /// The range of the nearest return of a cell and those around it, m; infinite without one.
     fn nearest_about(&self, cell: [isize; 2]) -> f64 {
-        let around = self.grid.around(cell, [HOLE_CELLS.max(REACH); 2]);
-        around.map(|(_, cell)| self.cells[cell].nearest()).fold(f64::INFINITY, f64::min)
+        let nearest = |cells: &mut dyn Iterator<Item = ([isize; 2], usize)>| {
+            cells.map(|(_, cell)| self.cells[cell].nearest()).fold(f64::INFINITY, f64::min)
+        };
+        let around = nearest(&mut self.grid.around(cell, [HOLE_CELLS.max(REACH); 2]));
+        let is_empty = |own: usize| self.cells[own].clearly_behind == 0.0;
+        if around.is_finite() && self.grid.index(cell[0], cell[1]).is_some_and(is_empty) {
+            // Across the hole that it is in.
+            return around.min(nearest(&mut self.brink(cell)));
+        }
+        around
     }
 }
 

@@ -194,7 +194,7 @@ impl Seeing<'_> {
     pub(crate) fn sight_of_returns(&self, place: &Point3, breadth: f64) -> Sight {
         let ray = place - self.image.sensor_origin;
         match self.raster.sight(&ray) {
-            Sight::Seen if self.is_coarse(ray.norm(), breadth) => Sight::Hole,
+            Sight::Seen if self.is_coarse(&ray, breadth) => Sight::Hole,
             sight => sight,
         }
     }
@@ -203,13 +203,14 @@ impl Seeing<'_> {
     /// have where this does not say so.
     pub(crate) fn sees_about(&self, place: &Point3, distance: f64, breadth: f64) -> bool {
         let ray = place - self.image.sensor_origin;
-        !self.is_coarse(ray.norm() + distance, breadth) && self.raster.sees_about(&ray, distance)
+        let is_coarse = |pixel: f64| pixel * (ray.norm() + distance) > breadth;
+        !self.pixel().is_some_and(is_coarse) && self.raster.sees_about(&ray, distance)
     }
 
-    /// Whether a body of such a breadth, m, fits between what pixels saw at a distance, m: nothing that it could hit need
-    /// have been met.
-    fn is_coarse(&self, distance: f64, breadth: f64) -> bool {
-        self.pixel().is_some_and(|pixel| pixel * distance > breadth)
+    /// Whether a body of such a breadth, m, fits between what pixels saw about a place, or lines of a scanner: nothing
+    /// that it could hit need have been met.
+    fn is_coarse(&self, ray: &Vector3, breadth: f64) -> bool {
+        self.raster.apart(ray).is_some_and(|apart| apart * ray.norm() > breadth)
     }
 
     /// Whether the camera looked past a place with this standard deviation (m), in its direction and in all around it.

@@ -125,7 +125,7 @@ impl Raster {
             self.is_open[cell] = true;
         }
         if let Some(lines) = &mut self.lines {
-            lines.add(cell, at[1], range + clear);
+            lines.add(cell, at[1], [range + clear, *clear]);
         }
     }
 

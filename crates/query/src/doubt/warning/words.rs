@@ -167,7 +167,9 @@ impl Warning {
             }
             Self::SensorRange { .. } => "another sensor, or another unit?",
             Self::SensorLayout { .. } => "kinect, stereo or tof?",
-            Self::NoImage { .. } => "give the organised cloud",
+            Self::NoImage { .. } => {
+                "give the organised cloud; in this one flying pixels stay, unless `outliers` drops them"
+            }
             Self::ImagePlace { .. } => {
                 "say where it stood in their frame (`sensor_pose`, VIEWPOINT of a PCD), and leave out rows and columns \
                  alike; without the layout what it did not see counts as empty"

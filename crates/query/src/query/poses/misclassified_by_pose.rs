@@ -33,7 +33,9 @@ pub(super) fn misclassified_by_pose(
     stats: &mut Stats,
 ) -> Result<Wrench, QueryError> {
     let patches = patches((a, b), a_from_b, found, task.settings.max_mesh_parts)?;
-    let Some(points) = patches.get(patch) else { return Ok(Wrench::zeros()) };
+    let Some(points) = patches.as_ref().and_then(|patches| patches.get(patch)) else {
+        return Ok(Wrench::zeros());
+    };
     let settings = ClassifierSettings {
         relative_gap: task.classifier.relative_gap.min(TIGHT),
         ..task.classifier

@@ -124,7 +124,7 @@ mod tests {
 
     /// Of no fitted surface.
     fn piece(point: UncertainPoint) -> Surfel {
-        Surfel::new(0, &Refined { point, spacing: 1.0, normal: None })
+        Surfel::new(0, &Refined { point, spacing: 1.0, normal: None, shared: 0.0 })
     }
 
     fn vector() -> impl Strategy<Value = Vector3> {

@@ -167,7 +167,7 @@ mod tests {
         let axis = unit(&normal).unwrap();
         let covariance = Covariance::from_axis(&axis, across, along);
         let point = UncertainPoint { mean, covariance };
-        Surfel::new(0, &Refined { point, spacing: 1.0, normal: Some(axis) })
+        Surfel::new(0, &Refined { point, spacing: 1.0, normal: Some(axis), shared: 0.0 })
     }
 
     #[test]

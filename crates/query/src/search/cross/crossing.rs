@@ -198,7 +198,7 @@ mod tests {
         let axis = Vector3::z_axis();
         let covariance = Covariance::from_axis(&axis, std, 0.35);
         let point = UncertainPoint { mean: Point3::origin(), covariance };
-        Surfel::new(0, &Refined { point, spacing: 1.0, normal: Some(axis) })
+        Surfel::new(0, &Refined { point, spacing: 1.0, normal: Some(axis), shared: 0.0 })
     }
 
     fn upright(x: f64, low: f64, high: f64) -> Edge {

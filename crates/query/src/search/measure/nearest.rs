@@ -23,6 +23,8 @@ pub(crate) struct Nearest {
     pub between: [u32; 2],
     /// The larger of their spacings, m; a mesh has none.
     pub spacing: f64,
+    /// The larger of how much of their variances those about them are off by too, from 0 to 1.
+    pub shared: f64,
 }
 
 impl Nearest {
@@ -36,6 +38,7 @@ impl Nearest {
             normals: [surfel.normal, facet.normal],
             between: [surfel.index, facet.triangle],
             spacing: surfel.spacing,
+            shared: surfel.shared,
         }
     }
 
@@ -121,6 +124,7 @@ fn between_noisy(a: &mut NoisyLeaf<'_>, b: &mut NoisyLeaf<'_>, within: f64) -> O
                     normals: [on_a.normal, on_b.normal],
                     between: [on_a.index, on_b.index],
                     spacing: on_a.spacing.max(on_b.spacing),
+                    shared: on_a.shared.max(on_b.shared),
                 });
             }
         }

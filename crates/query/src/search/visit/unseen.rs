@@ -215,7 +215,7 @@ mod tests {
     fn surfel(point: UncertainPoint, spacing: f64, normal: Option<Vector3>, across: f64) -> Surfel {
         let (end, across) = (End::Nowhere, across * across);
         let most_variance = point.covariance.max_std().powi(2);
-        Surfel { index: 0, point, end, spacing, most_variance, across, normal }
+        Surfel { index: 0, point, end, spacing, most_variance, across, normal, shared: 0.0 }
     }
 
     proptest! {
