@@ -31,6 +31,7 @@ pub(crate) use loaded::{Input, Loaded, Role};
 use of_clouds::of_clouds;
 pub(crate) use of_mesh::SUSPICIOUS_MESH_SIZE;
 use of_mesh::{of_mesh, prepared};
+use short::named;
 
 /// Reads a file and prepares it; a mesh file has no sensor.
 pub(crate) fn body<C: PreparedCloud>(
@@ -149,8 +150,4 @@ fn robot(options: &BodyOptions<'_>) -> Result<Vec<SelfMesh>> {
             })
         })
         .collect()
-}
-
-fn named(path: &Path) -> String {
-    path.display().to_string()
 }

@@ -13,7 +13,7 @@ use crate::usage::{self, WrongUsage};
 
 use super::geometry::Kind;
 use super::loaded::{Input, Loaded, Role};
-use super::{named, short};
+use super::short::{self, named};
 
 /// A mesh this large is rather in millimetres than in metres, m.
 pub(crate) const SUSPICIOUS_MESH_SIZE: f64 = 100.0;

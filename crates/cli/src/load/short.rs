@@ -1,8 +1,13 @@
-//! Names of files without their folders, for titles.
+//! Names of files, for messages, and without their folders, for titles.
 
 use std::path::Path;
 
 use cloudtouch_io::recording::file_of;
+
+/// A file as it was named.
+pub(super) fn named(path: &Path) -> String {
+    path.display().to_string()
+}
 
 /// Of a body that was read from these files, each as it was named. What names a scan in a recording stays whole, with
 /// the slashes of its topic.

@@ -3,11 +3,11 @@
 mod of_camera;
 mod of_cloud;
 mod of_mesh;
+mod triple;
 
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use cloudtouch::geom::Point3;
 use cloudtouch_io::{Geometry, is_depth_image};
 
 use crate::answers::print;
@@ -65,8 +65,4 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
 fn answer(arguments: &InfoArguments, text: &str) -> Result<ExitCode> {
     print::to_stdout(&format!("{}\n{text}\n", arguments.file.display()))?;
     Ok(ExitCode::SUCCESS)
-}
-
-fn triple(p: &Point3) -> String {
-    format!("({:.3}, {:.3}, {:.3})", p.x, p.y, p.z)
 }

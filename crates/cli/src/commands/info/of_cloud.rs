@@ -8,7 +8,7 @@ use cloudtouch_page::words;
 
 use crate::sensor::{Chosen, suggestion};
 
-use super::triple;
+use super::triple::triple;
 
 /// Points whose neighbours tell the spacing.
 const SPACING_SAMPLE: usize = 500;

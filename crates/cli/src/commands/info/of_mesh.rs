@@ -5,7 +5,7 @@ use cloudtouch::{Mesh, PrepareError};
 
 use crate::load::SUSPICIOUS_MESH_SIZE;
 
-use super::triple;
+use super::triple::triple;
 
 pub(super) fn describe_mesh(mesh: &TriangleMesh) -> String {
     let merged = mesh.merged().without_repeats();

@@ -72,17 +72,17 @@ impl Raster {
                 }
             }
             if farthest > 0.0 {
+                // What lines have between them is told by these.
+                let is_speck = ring > 0 && self.lines.is_none();
+                let brink =
+                    if is_speck { self.behind_brink(ray, at, [x, y]) } else { f64::INFINITY };
                 return match range > farthest {
                     true if is_open => Sight::OutOfRange,
                     true if self.is_close_behind(range, [x, y]) => Sight::CloseBehind,
                     true => Sight::BehindReturns,
-                    false if is_behind_lines() => Sight::BehindReturns,
-                    false if ring == 0 && self.is_behind_surface(ray, at, [x, y]) => {
-                        Sight::BehindReturns
-                    }
-                    false if ring > 0 && self.is_behind_brink(ray, at, [x, y]) => {
-                        Sight::BehindReturns
-                    }
+                    false if range > brink && range <= brink + CLOSE => Sight::CloseBehind,
+                    false if range > brink || is_behind_lines() => Sight::BehindReturns,
+                    false if self.is_behind_surface(ray, at, [x, y]) => Sight::BehindReturns,
                     false => Sight::Seen,
                 };
             }
@@ -118,47 +118,39 @@ impl Raster {
     /// Whether a place is clearly behind the surface that a cell and those around it are on, where that is even.
     fn is_behind_surface(&self, ray: &Vector3, at: [f64; 2], [x, y]: [isize; 2]) -> bool {
         let Some(own) = self.grid.index(x, y) else { return false };
-        let clear = self.cells[own].clear();
-        if ray.norm() <= self.seen().about[own] + clear {
+        let (range, clear) = (ray.norm(), self.cells[own].clear());
+        if range <= self.seen().about[own] + clear {
             return false;
         }
         let around = self.grid.around([x, y], [REACH; 2]);
-        self.is_behind_plane(ray, (at, [x, y]), around, clear).unwrap_or(false)
+        self.behind_plane(ray, (at, [x, y]), around, clear).is_some_and(|behind| range > behind)
     }
 
-    /// Whether a place in a cell without returns is clearly behind the surface that what is beside the hole is on; where
-    /// that is no plane, behind the nearest of it: between a thing and what is behind it nothing tells which of them
-    /// goes on.
-    fn is_behind_brink(&self, ray: &Vector3, at: [f64; 2], cell: [isize; 2]) -> bool {
-        let Some(own) = self.grid.index(cell[0], cell[1]) else { return false };
-        let range = ray.norm();
-        // What lines have between them is told by these.
-        if self.lines.is_some() || range <= self.seen().about[own] {
-            return false;
-        }
+    /// The range clearly behind the surface that what is beside a cell without returns is on; where that is no plane, behind
+    /// the nearest of it: between a thing and what is behind it nothing tells which of them goes on.
+    fn behind_brink(&self, ray: &Vector3, at: [f64; 2], cell: [isize; 2]) -> f64 {
         let nearest = || self.brink(cell).map(|(_, cell)| self.cells[cell].behind_nearest);
-        let is_behind = || range > nearest().fold(f64::INFINITY, f64::min);
-        self.is_behind_plane(ray, (at, cell), self.brink(cell), 0.0).unwrap_or_else(is_behind)
+        let plane = self.behind_plane(ray, (at, cell), self.brink(cell), 0.0);
+        plane.unwrap_or_else(|| nearest().fold(f64::INFINITY, f64::min))
     }
 
-    /// Whether a place is clearly behind the plane that some cells are on, returns being known at least this well, m;
-    /// `None` where they are on none.
-    fn is_behind_plane(
+    /// The range clearly behind the plane that some cells are on, returns being known at least this well, m; `None` where
+    /// they are on none.
+    fn behind_plane(
         &self,
         ray: &Vector3,
         (at, cell): ([f64; 2], [isize; 2]),
         cells: impl Iterator<Item = ([isize; 2], usize)>,
         mut clear: f64,
-    ) -> Option<bool> {
+    ) -> Option<f64> {
         let mut surface = Surface::default();
         for (aside, cell) in cells {
             clear = clear.max(self.cells[cell].clear());
             surface.add(aside, self.means[cell]);
         }
-        let (range, place) = (ray.norm(), self.grid.place_in(at, cell));
-        let distance = self.lens.distance(ray, range);
-        let surface = surface.distance(clear, place)?;
-        Some(distance > surface + clear * distance / range)
+        let range = ray.norm();
+        let distance = surface.distance(clear, self.grid.place_in(at, cell))?;
+        Some(distance * range / self.lens.distance(ray, range) + clear)
     }
 
     /// The first cells with returns on all sides of one without, no farther away than across a hole that counts as seen.
