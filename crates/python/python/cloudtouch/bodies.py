@@ -394,7 +394,7 @@ class Mesh:
     ValueError
         An array has the wrong shape or type.
     CloudtouchError
-        There are no triangles, an index or a coordinate is out of range, or every triangle is degenerate.
+        There are no triangles, an index or a coordinate is out of range, or two corners of every triangle are in one place.
     """
 
     __slots__ = ("_body",)

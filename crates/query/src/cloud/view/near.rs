@@ -2,9 +2,9 @@
 
 use cloudtouch_geom::{Point3, Vector3};
 
-use super::Seeing;
 use super::lens::Lens;
 pub(in crate::cloud) use super::lens::Spot;
+use super::seeing::Seeing;
 
 /// Points in a cell, about.
 const IN_CELL: f64 = 4.0;

@@ -2,8 +2,8 @@
 
 use crate::filter::SelfMesh;
 
-use super::Seeing;
 use super::raster::CLEARLY;
+use super::seeing::Seeing;
 use super::seen::Sight;
 
 /// What collision meshes are larger than links are at most, m.
