@@ -10,6 +10,8 @@ use crate::error::SubdivisionError;
 /// Outside the core an edge may be this long for each metre it is away: the farther a sample, the
 /// less its exact place matters to a surface near the cloud leaf.
 const GRADING: f64 = 0.5;
+/// Edges whose lengths differ by less than this part are as long as each other.
+const TIED: f64 = 1e-9;
 /// Deepest subdivision of one triangle: from 1e10 m, the largest, to nanometres. Only parts that
 /// come near the leaf are split again, so that depth is cheap; a triangle of 1e9 m ended in parts of
 /// metres at a quarter of that depth, with no corner near the cloud on it.
@@ -95,7 +97,9 @@ pub(crate) fn four_per_triangle(triangles: impl IntoIterator<Item = [Point3; 3]>
 pub(super) fn halved(corners: &[Point3; 3]) -> (f64, Option<[[Point3; 3]; 2]>) {
     let corner = |k: usize| corners[k % 3];
     let lengths = [0, 1, 2].map(|k| (corner(k + 1) - corner(k)).norm());
-    let long = (0..3).fold(0, |most, k| if lengths[k] > lengths[most] { k } else { most });
+    // Of those that are as long the first of the file: rounding, and with it the frame, is not to choose.
+    let is_longer = |k: usize, than: usize| lengths[k] > lengths[than] * (1.0 + TIED);
+    let long = (0..3).fold(0, |most, k| if is_longer(k, most) { k } else { most });
     let (from, to, other) = (corner(long), corner(long + 1), corner(long + 2));
     let middle = nalgebra::center(&from, &to);
     let is_split = middle != from && middle != to;
@@ -147,6 +151,8 @@ pub(super) fn by_coordinates(p: &Point3, q: &Point3) -> Ordering {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 mod tests {
+    use cloudtouch_geom::{Pose, Vector3, seed};
+
     use super::*;
 
     #[test]
@@ -169,6 +175,20 @@ mod tests {
         let mut unique = points.clone();
         unique.dedup();
         assert_eq!(unique.len(), points.len());
+    }
+
+    /// Rounding told which of two edges that are as long is the longest, and with it the frame that a mesh is written in.
+    #[test]
+    fn a_triangle_with_two_longest_edges_is_halved_alike_in_any_frame() {
+        let corners = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.01, 0.05, 0.0]].map(Point3::from);
+        for draw in 0..200 {
+            let turn = [0, 1, 2].map(|k| 6.0 * seed::unit(seed::derive(3, draw, k)));
+            let pose = Pose::from_translation_rpy(Vector3::new(1.3, -0.7, 2.9), turn);
+            let (_, halves) = halved(&corners.map(|p| pose.transform_point(&p)));
+            let middle = pose.inverse().transform_point(&halves.unwrap()[1][0]);
+            let expected = nalgebra::center(&corners[1], &corners[2]);
+            assert!((middle - expected).norm() < 1e-9, "{middle} for {expected}");
+        }
     }
 
     #[test]
