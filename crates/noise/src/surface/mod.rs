@@ -218,7 +218,7 @@ fn measured<S: Machine>(machine: S, patch: &Patch, plane: &Plane) -> Option<Surf
         hidden: error.chance,
         bend: error.bend,
         misfit: error.beyond.max(0.0),
-        shared: error.shared(patch.own_variance(&normal), reach),
+        shared: error.shared(patch.own_variance(&normal), reach) * patch.shows_noise(&normal),
         suspected: 0.0,
         disagreement: 0.0,
         tilt: 0.0,

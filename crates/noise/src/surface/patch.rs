@@ -246,6 +246,13 @@ impl<'a> Patch<'a> {
         isotropic.unwrap_or_else(|| self.own_noise.variance_along(normal)).max(self.floor)
     }
 
+    /// How surely residuals would show the noise along a unit normal, from 0 to 1: not where it is no more than those that
+    /// are taken for nothing.
+    pub(crate) fn shows_noise(&self, normal: &Vector3) -> f64 {
+        let noise = self.own_noise.variance_along(normal);
+        if noise > self.floor { (noise / self.floor - 1.0).min(1.0) } else { 0.0 }
+    }
+
     /// An upper bound of [`Self::own_variance`] over all normals.
     pub(crate) fn largest_own_variance(&self) -> f64 {
         self.own_noise.std_bound().powi(2).max(self.floor)
