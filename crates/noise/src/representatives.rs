@@ -30,8 +30,8 @@ const NOISY_SHARE: f64 = 0.05;
 ///     Neighborhoods, NoiseModel, Representatives, Scratch, SensorNoise, spacings_at,
 /// };
 ///
-/// // A floor of 60 by 60 points, 1 cm apart, each known to 4 cm; every other one was measured 3 cm too high.
-/// let height = |i: i32| if i % 2 == 0 { 0.03 } else { 0.0 };
+/// // A floor of 60 by 60 points, 1 cm apart, with 4 cm of noise.
+/// let height = |i: i32| 0.056 * (0.7 * f64::from(i * i)).sin();
 /// let points: Vec<Point3> = (0..3600)
 ///     .map(|i| Point3::new(0.01 * f64::from(i / 60), 0.01 * f64::from(i % 60), height(i)))
 ///     .collect();
