@@ -33,8 +33,10 @@ struct Counted<'f, 'a> {
     deviations: f64,
     /// How near it is beside the nearest, from 0 to 1.
     near: f64,
-    /// How surely it is on one side of the other surface, from 0 to 1; less than 0 inside of a closed mesh. Less where
-    /// those about it are off by what it is off: they say it once.
+    /// How much of its error is its own, from 0 to 1: what those about it are off by too they say once.
+    alone: f64,
+    /// How surely it is on one side of the other surface, as far as it is alone, from 0 to 1; less than 0 inside of a
+    /// closed mesh.
     side: f64,
 }
 
@@ -94,8 +96,7 @@ impl Found<'_> {
         let of_window = if self.is_window_cut() { -least } else { Wrench::zeros() };
         let mut all = Wrench::zeros();
         self.visit(facing, |piece| {
-            let Counted { leaf, place, deviations, near, side } = piece;
-            let alone = 1.0 - leaf.surfels[place].shared;
+            let Counted { leaf, place, deviations, near, alone, side } = piece;
             let is_on_ramp = near < 1.0;
             let of_piece = facing.deviations_by_pose((leaf, place), deviations);
             all += of_piece * (2.0 * normal::density(deviations) * alone * side.signum() * near);
@@ -123,7 +124,7 @@ impl Found<'_> {
                 let alone = 1.0 - leaf.surfels[place].shared;
                 if near > 0.0 && alone > 0.0 {
                     let side = alone * facing.side(leaf, place, deviations);
-                    visit(Counted { leaf, place, deviations, near, side });
+                    visit(Counted { leaf, place, deviations, near, alone, side });
                 }
             }
         }

@@ -57,7 +57,7 @@ impl Raster {
             cells.map(|(_, cell)| self.cells[cell].nearest()).fold(f64::INFINITY, f64::min)
         };
         let around = nearest(&mut self.grid.around(cell, [HOLE_CELLS.max(REACH); 2]));
-        let is_empty = |own: usize| self.cells[own].clearly_behind == 0.0;
+        let is_empty = |own: usize| self.cells[own].is_empty();
         if around.is_finite() && self.grid.index(cell[0], cell[1]).is_some_and(is_empty) {
             // Across the hole that it is in.
             return around.min(nearest(&mut self.brink(cell)));

@@ -64,7 +64,7 @@ impl Raster {
             (1..=ACROSS).find_map(|steps| {
                 let aside = side.map(|k| k * steps);
                 let cell = self.grid.index(x + aside[0], y + aside[1])?;
-                (self.cells[cell].clearly_behind > 0.0).then_some((aside, cell))
+                (!self.cells[cell].is_empty()).then_some((aside, cell))
             })
         })
     }

@@ -171,6 +171,7 @@ mod tests {
             assert!((behind / floor(at) - 1.0).abs() < 0.005, "{at}: {behind}");
         }
         assert_eq!(told(&EVEN, -0.29, floor), None);
+        assert_eq!(told(&EVEN, -0.18, floor), None);
         // What a scanner saw of other lines alone tells nothing between them.
         assert_eq!(lines(&EVEN, floor).between(-0.23, std::iter::empty(), 3..4), None);
     }

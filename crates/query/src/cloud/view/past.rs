@@ -50,6 +50,6 @@ impl Raster {
         let middle = self.lens.project(ray).and_then(|at| self.grid.cell(at));
         let around =
             middle.into_iter().flat_map(|middle| self.grid.around(middle, self.grid.reach()));
-        around.filter(|(_, cell)| self.cells[*cell].clearly_behind > 0.0)
+        around.filter(|(_, cell)| !self.cells[*cell].is_empty())
     }
 }

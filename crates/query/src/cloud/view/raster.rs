@@ -65,9 +65,14 @@ impl Cell {
         0.5 * (self.clearly_before + self.behind_nearest)
     }
 
+    /// Whether it has no return.
+    pub(super) fn is_empty(&self) -> bool {
+        self.clearly_behind == 0.0
+    }
+
     /// How much farther than its nearest return is clearly behind it, m; zero without one.
     pub(super) fn clear(&self) -> f64 {
-        if self.clearly_behind > 0.0 { self.behind_nearest - self.nearest() } else { 0.0 }
+        if self.is_empty() { 0.0 } else { self.behind_nearest - self.nearest() }
     }
 
     fn add(&mut self, [before, behind]: [f64; 2]) {
