@@ -8,7 +8,7 @@ use cloudtouch_io::{Fault, LengthUnit, ReadError};
 use cloudtouch_robot::{RobotError, RobotFault};
 use serde_json::Value;
 
-const SENSOR_POSE: &str = "--sensor-pose, in a scene file `sensor_pose`";
+const SENSOR_POSE: &str = "--sensor-pose, in a scene file `sensor_pose`, in a PCD VIEWPOINT";
 
 /// A warning with the option that mends it.
 pub(crate) fn warning(warning: &Warning) -> String {

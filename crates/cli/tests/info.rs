@@ -155,5 +155,10 @@ fn points_at_the_origin_of_any_cloud_were_called_no_returns() {
     assert!(!text.contains("no returns"), "{text}");
     cloud.sensor_pose = Some(Pose::from_translation(Vector3::new(0.0, 0.0, 0.05)));
     let text = told(&cloud);
-    assert!(text.contains("too near    ") && text.contains("no returns, left out"), "{text}");
+    assert!(text.contains("near sensor ") && text.contains("surface, unless"), "{text}");
+    assert!(text.contains("--min-range 0.1") && !text.contains("no returns"), "{text}");
+    // Only rows and columns show that the sensor was there.
+    cloud.image_size = Some((20, 20));
+    let text = told(&cloud);
+    assert!(text.contains("too near    ") && text.contains("no returns"), "{text}");
 }

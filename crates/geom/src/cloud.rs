@@ -70,8 +70,8 @@ impl PointCloud {
         }
     }
 
-    /// One of each so many columns and rows of an image, the first: fewer pixels, each of them as it was, and an image
-    /// still, which shows what the camera did not see. `None` where the cloud is no image.
+    /// Every `columns`-th column and `rows`-th row of an image, from the first on. Pixels stay as they were, and the
+    /// result is an image still, which shows what the camera did not see. `None` if the cloud is no image.
     ///
     /// # Panics
     /// When one of the two numbers is 0.
@@ -96,8 +96,8 @@ impl PointCloud {
     }
 
     /// The same cloud in the frame that `pose` maps its own into: points, covariances, normals and
-    /// where the sensor was. An image of which nobody said was in its camera's frame; of any other cloud it
-    /// stays unsaid: set `sensor_pose` to the identity first where its frame is its sensor's.
+    /// where the sensor was. If `sensor_pose` is `None`, an image is taken to have been in its camera's frame; for any
+    /// other cloud it stays `None`: set it to the identity first if the cloud is in its sensor's frame.
     #[must_use]
     pub fn transformed(&self, pose: &Pose) -> Self {
         let turned = |c: &Covariance| c.rotated(pose.rotation());

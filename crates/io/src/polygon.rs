@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Point3, Vector3};
 
-/// Those with more corners stay fans: time grows with the square of their number at least.
+/// Those with more corners stay fans: time grows with the square of their number.
 const MOST_CORNERS: usize = 1000;
 
 /// The polygons with more than three corners among triangles, which fan out from their first corner until all
@@ -60,33 +60,84 @@ fn area([a, b, c]: [[f64; 2]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
+/// A polygon of which ears are cut off.
+struct Ring<'a> {
+    outline: &'a [[f64; 2]],
+    /// The corners that are left.
+    left: Vec<usize>,
+    /// Whether each of these is an ear.
+    are_ears: Vec<bool>,
+}
+
+impl<'a> Ring<'a> {
+    fn new(outline: &'a [[f64; 2]]) -> Self {
+        Self { outline, left: (0..outline.len()).collect(), are_ears: Vec::new() }
+    }
+
+    /// A corner between the two beside it.
+    fn at(&self, k: usize) -> [usize; 3] {
+        let count = self.left.len();
+        [self.left[(k + count - 1) % count], self.left[k], self.left[(k + 1) % count]]
+    }
+
+    fn turn(&self, of: [usize; 3]) -> f64 {
+        area(of.map(|i| self.outline[i]))
+    }
+
+    fn is_convex(&self) -> bool {
+        (0..self.left.len()).all(|k| self.turn(self.at(k)) >= 0.0)
+    }
+
+    fn is_ear(&self, k: usize) -> bool {
+        let ear = self.at(k);
+        let is_corner = |i: usize| ear.iter().any(|&at| self.outline[at] == self.outline[i]);
+        let holds = |i: usize| {
+            let [a, b, c] = ear;
+            [[a, b, i], [b, c, i], [c, a, i]].into_iter().all(|side| self.turn(side) >= 0.0)
+        };
+        self.turn(ear) >= 0.0 && !self.left.iter().any(|&i| !is_corner(i) && holds(i))
+    }
+
+    fn find_ears(&mut self) -> Option<usize> {
+        self.are_ears = (0..self.left.len()).map(|k| self.is_ear(k)).collect();
+        self.first_ear()
+    }
+
+    fn first_ear(&self) -> Option<usize> {
+        self.are_ears.iter().position(|&is_ear| is_ear)
+    }
+
+    /// What is left then changes at the two corners beside it.
+    fn cut(&mut self, k: usize) -> [usize; 3] {
+        let ear = self.at(k);
+        self.left.remove(k);
+        self.are_ears.remove(k);
+        let count = self.left.len();
+        for beside in [(k + count - 1) % count, k % count] {
+            self.are_ears[beside] = self.is_ear(beside);
+        }
+        ear
+    }
+}
+
 /// Triangles by cutting off ears; `None` for a convex polygon, and where there is no ear left.
 fn ears(outline: &[[f64; 2]]) -> Option<Vec<[usize; 3]>> {
-    let mut ring: Vec<usize> = (0..outline.len()).collect();
-    let at = |ring: &[usize], k: usize| -> [usize; 3] {
-        let count = ring.len();
-        [ring[(k + count - 1) % count], ring[k], ring[(k + 1) % count]]
-    };
-    let turn = |of: [usize; 3]| area(of.map(|i| outline[i]));
-    if (0..ring.len()).all(|k| turn(at(&ring, k)) >= 0.0) {
+    /// Corners in one line, or one on another, may hide an ear, which looking at all anew finds: so often.
+    const MOST_LOOKS: usize = 8;
+    let mut ring = Ring::new(outline);
+    if ring.is_convex() {
         return None;
     }
-    let mut found = Vec::with_capacity(ring.len() - 2);
-    while ring.len() > 3 {
-        let is_ear = |&k: &usize| {
-            let ear = at(&ring, k);
-            let is_corner = |i: &usize| ear.iter().any(|&corner| outline[corner] == outline[*i]);
-            let holds = |i: &usize| {
-                let [a, b, c] = ear;
-                [[a, b, *i], [b, c, *i], [c, a, *i]].into_iter().all(|side| turn(side) >= 0.0)
-            };
-            turn(ear) >= 0.0 && !ring.iter().any(|i| !is_corner(i) && holds(i))
-        };
-        let ear = (0..ring.len()).find(is_ear)?;
-        found.push(at(&ring, ear));
-        ring.remove(ear);
+    let mut found = Vec::with_capacity(outline.len() - 2);
+    let mut looks = 0;
+    while ring.left.len() > 3 {
+        let ear = ring.first_ear().or_else(|| {
+            looks += 1;
+            (looks <= MOST_LOOKS).then(|| ring.find_ears()).flatten()
+        })?;
+        found.push(ring.cut(ear));
     }
-    found.push([ring[0], ring[1], ring[2]]);
+    found.push([ring.left[0], ring.left[1], ring.left[2]]);
     Some(found)
 }
 
@@ -146,12 +197,30 @@ mod tests {
                 [radius * angle.cos(), radius * angle.sin()]
             })
             .collect();
-        let shoelace: f64 = (0..48)
-            .map(|k| {
-                0.5 * (gear[k][0] * gear[(k + 1) % 48][1] - gear[(k + 1) % 48][0] * gear[k][1])
-            })
-            .sum();
-        assert!(areas(&gear).iter().all(|area| (area - shoelace).abs() < 1e-12));
+        let expected = shoelace(&gear);
+        assert!(areas(&gear).iter().all(|area| (area - expected).abs() < 1e-12));
+    }
+
+    fn shoelace(outline: &[[f64; 2]]) -> f64 {
+        let ends = outline.iter().zip(outline.iter().cycle().skip(1));
+        ends.map(|([x, y], [to_x, to_y])| 0.5 * (x * to_y - to_x * y)).sum()
+    }
+
+    /// Most of its corners are no ears for long: looking for one from the first corner on took the cube of their number.
+    #[test]
+    fn a_long_spiral_is_cut_by_few_looks_at_all_of_it() {
+        let arm = |k: u32, width: f64| {
+            let angle = 0.1 * f64::from(k);
+            let radius = 1.0 + 0.2 * angle + width;
+            [radius * angle.cos(), radius * angle.sin()]
+        };
+        let out = (0..499).map(|k| arm(k, 0.5));
+        let spiral: Vec<[f64; 2]> = out.chain((0..499).rev().map(|k| arm(k, 0.0))).collect();
+        let found = ears(&spiral).expect("it is not convex");
+        let turn = |ear: &[usize; 3]| 0.5 * area(ear.map(|i| spiral[i]));
+        let covered: f64 = found.iter().map(turn).sum();
+        assert!(found.iter().all(|ear| turn(ear) >= 0.0));
+        assert!((covered - shoelace(&spiral).abs()).abs() < 1e-9, "{covered}");
     }
 
     #[test]

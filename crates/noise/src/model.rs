@@ -56,10 +56,10 @@ impl NoiseModel {
     /// [`bounds`](Self::bounds) rests.
     ///
     /// With [`Combination::SurfacePosterior`] the covariance is v n nᵀ + t² (I − n nᵀ), n the normal
-    /// and t the disc of 0.35 spacings, widened by the noise where it is uncertain which way the
-    /// surface faces. A point whose neighbourhood determines no plane (alone, on a
-    /// line, fewer than five distinct positions) keeps its place and gets Σᵢ + (0.35 h)² I. With
-    /// the other combinations a point without neighbours keeps Σᵢ, to which `Convolution` adds the
+    /// and t the disc of d spacings ([`PosteriorSettings::disc_std`](crate::PosteriorSettings::disc_std)), widened by
+    /// the noise where it is uncertain which way the surface faces. A point whose neighbourhood determines no plane
+    /// (alone, on a line, fewer than five distinct positions) keeps its place and gets Σᵢ + (d h)² I, h the spacing.
+    /// With the other combinations a point without neighbours keeps Σᵢ, to which `Convolution` adds the
     /// cap unless it is infinite. A point that is not finite has no neighbours.
     ///
     /// Where the noise exceeds the spacing of the cloud, refine [`Representatives`]
@@ -223,8 +223,9 @@ impl NoiseModel {
     }
 
     /// Mean and covariance of a surface point whose normal is known, not fitted: the point stays
-    /// where it was measured, with v n nᵀ + (0.35 h)² (I − n nᵀ), v the variance of `sensor` along
-    /// the normal and a part of the spacing. Within [`bounds`](Self::bounds).
+    /// where it was measured, with v n nᵀ + (d h)² (I − n nᵀ), d the
+    /// [`disc_std`](crate::PosteriorSettings::disc_std) and h the spacing, v the variance of `sensor` along the normal
+    /// and a part of the spacing. Within [`bounds`](Self::bounds).
     ///
     /// # Panics
     /// When `index` does not belong to the cloud.

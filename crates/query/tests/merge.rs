@@ -209,7 +209,7 @@ fn a_scan_that_is_given_twice_is_refused() {
     let [one, other] = views();
     let by = CloudSettings::new(SensorModel::Kinect);
     let twice = Cloud::merge(&[(&one, &by), (&other, &by), (&one.clone(), &by)]);
-    assert_eq!(twice.expect_err("the first again"), PrepareError::RepeatedScan { scan: 3 });
+    assert_eq!(twice.expect_err("the first again"), PrepareError::RepeatedScan { scan: 2 });
     // What holds all of another is not that.
     let half = PointCloud::from_points(one.points.iter().copied().step_by(2).collect());
     let by = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });

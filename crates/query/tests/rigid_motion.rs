@@ -1,5 +1,7 @@
 //! Moving everything moves the contacts and changes nothing else.
 
+use std::cell::Cell;
+
 use crate::common::{Scan, ask, at, measured, prepare_each, uniform};
 use cloudtouch::geom::{Covariance, Point3, Pose, Vector3};
 use cloudtouch::{Mode, Report};
@@ -84,11 +86,13 @@ fn turning_the_frame_of_a_changes_no_probability() {
 /// less than a millimetre.
 #[test]
 fn contacts_turn_with_the_frame_of_a() {
+    let compared = Cell::new(0);
     still_and_turned(|motion, still, turned| {
         let Some(contact) = still.contacts.first() else { return };
         if still.collision_probability > 0.99 {
             return;
         }
+        compared.set(compared.get() + 1);
         let wanted = motion.transform_point(&contact.point);
         let off = |c: &&cloudtouch::Contact| (c.point - wanted).norm();
         let found = turned.contacts.iter().min_by(|c, d| off(c).total_cmp(&off(d)));
@@ -97,4 +101,5 @@ fn contacts_turn_with_the_frame_of_a() {
         let cosine = found.normal_a_to_b.dot(&motion.transform_vector(&contact.normal_a_to_b));
         assert!(cosine > 0.99, "{contact:?} became {found:?}");
     });
+    assert!(compared.get() >= 4, "{compared:?} of six");
 }

@@ -1,5 +1,6 @@
 //! A robot along a path of its joints: nothing between the positions given is missed.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
@@ -153,7 +154,10 @@ impl RobotChecker {
                 let of = |time| between(&ends[0], &ends[1], time);
                 let pair = self.check_at(query, segment, &of(middle))?.pairs.into_iter().next();
                 let around = || self.around(query, &of(middle), [&of(from), &of(to)]);
-                let may_meet = |at_most: f64| at_most >= query.settings().reject;
+                // No number is not below the threshold either.
+                let may_meet = |at_most: f64| {
+                    at_most.partial_cmp(&query.settings().reject) != Some(Ordering::Less)
+                };
                 let ends_free = not_free.as_ref().is_none_or(|(time, _)| to < *time);
                 if pair.is_none() && ends_free && !around().any(|(_, at_most)| may_meet(at_most)) {
                     certified_free_until = (segment as f64 + to) / segments;

@@ -6,13 +6,13 @@ use cloudtouch_svm::{Classifier, Kernel, Problem, Sample, UnitBox};
 use proptest::prelude::*;
 
 /// Loose and tight classifiers of one problem, where both are to be had; the tight one stands for the
-/// optimum, and what is left of its own gap is counted.
-fn check(samples: &[Sample], kernel: Kernel, gap: f64) {
+/// optimum, and what is left of its own gap is counted. Whether both were.
+fn check(samples: &[Sample], kernel: Kernel, gap: f64) -> bool {
     let problem = Problem::new(samples, kernel).unwrap();
     let loose = problem.solve(&settings(gap)).unwrap();
     let tight = problem.solve(&settings(1e-10)).unwrap();
     let both = [&loose, &tight].map(|solution| Classifier::new(&problem, solution));
-    let [Ok(f), Ok(g)] = both else { return };
+    let [Ok(f), Ok(g)] = both else { return false };
     for (i, s) in samples.iter().enumerate() {
         let at = s.point.mean;
         let [p, q] = [&f, &g].map(|f| f.probability(&s.point, s.class).unwrap());
@@ -30,6 +30,7 @@ fn check(samples: &[Sample], kernel: Kernel, gap: f64) {
             assert!((p - q).abs() <= off, "sample {i}: {p} and {q}, {off}");
         }
     }
+    true
 }
 
 proptest! {
@@ -52,7 +53,7 @@ proptest! {
         }
         let gamma = 10_f64.powf(log_gamma);
         let kernel = if shape == 3 { Kernel::Linear } else { Kernel::Gaussian { gamma } };
-        check(&samples, kernel, 10_f64.powf(log_gap));
+        prop_assume!(check(&samples, kernel, 10_f64.powf(log_gap)));
     }
 }
 
@@ -66,7 +67,7 @@ fn the_error_of_probabilities_was_zero_for_exact_training_and_wide_ranges() {
             let kernel = Kernel::Gaussian { gamma };
             let solution = Problem::new(&samples, kernel).unwrap().solve(&settings(1e-3)).unwrap();
             assert!(solution.error.probability > 0.0);
-            check(&samples, kernel, 2e-2);
+            assert!(check(&samples, kernel, 2e-2), "seed {seed}");
         }
     }
 }

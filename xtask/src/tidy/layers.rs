@@ -29,9 +29,11 @@ fn may_use(name: &str) -> Option<&'static [&'static str]> {
             &LAYERS[..1]
         }
         "cloudtouch" => &LAYERS[..4],
-        "cloudtouch-page" => &LAYERS[..5],
-        "cloudtouch-robot" => &LAYERS[..6],
-        "cloudtouch-cli" | "cloudtouch-python" => &LAYERS[..8],
+        "cloudtouch-page" => &["cloudtouch"],
+        "cloudtouch-robot" => &["cloudtouch", "cloudtouch-io"],
+        "cloudtouch-cli" | "cloudtouch-python" => {
+            &["cloudtouch", "cloudtouch-io", "cloudtouch-page", "cloudtouch-robot"]
+        }
         "cloudtouch-benches" | "cloudtouch-fuzzing" | "cloudtouch-evaluation" => &LAYERS[..9],
         "xtask" => &LAYERS,
         _ => return None,

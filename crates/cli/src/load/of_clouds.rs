@@ -60,8 +60,8 @@ pub(super) fn of_clouds<C: PreparedCloud>(
         sensor_because: because.filter(|_| grid.is_none()),
     };
     let prepared = prepared.map_err(|error| match error {
-        PrepareError::Scan { scan, error, .. } => anyhow!(*error).context(names[scan - 1].clone()),
-        PrepareError::RepeatedScan { scan } => anyhow!("{error}").context(names[scan - 1].clone()),
+        PrepareError::Scan { scan, error, .. } => anyhow!(*error).context(names[scan].clone()),
+        PrepareError::RepeatedScan { scan } => anyhow!("{error}").context(names[scan].clone()),
         other => anyhow!(other).context(name.to_owned()),
     })?;
     Ok(Loaded { body: Body::Cloud(prepared), input, kinds })

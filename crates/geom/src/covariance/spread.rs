@@ -98,8 +98,8 @@ impl Covariance {
     }
 }
 
-/// Eigenvalues in descending order, none of them negative, and the axes they belong to; no numbers where one is none, for
-/// its sign, which is anything, would tell its place.
+/// Eigenvalues in descending order, none of them negative, and the axes they belong to. If one is NaN all
+/// are: the sign of a NaN is arbitrary and would decide its place.
 fn in_order((values, axes): (Vector3, Matrix3)) -> (Vector3, Matrix3) {
     if values.iter().any(|value| value.is_nan()) {
         return (Vector3::repeat(f64::NAN), axes);

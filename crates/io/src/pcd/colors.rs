@@ -28,7 +28,7 @@ pub fn colors_within(
     let packed = parse_columns(&header, &[place; 3], lines, limits)?;
     let unpack = |value: f64| {
         let is_text = header.data == Data::Ascii && is_float;
-        let bits = if is_text { (value as f32).to_bits() } else { value as u32 };
+        let bits = if is_text { (value as f32).to_bits() } else { value as i64 as u32 };
         let [_, red, green, blue] = bits.to_be_bytes();
         [red, green, blue]
     };

@@ -16,9 +16,9 @@ use crate::{
 /// Writes a cloud as a PCD file, whole or not at all.
 ///
 /// Binary doubles: reading it back gives the same bits, missing returns, covariances, sensor
-/// origin and image size included, and the same cloud gives the same bytes everywhere. Compressing
-/// doubles gains next to nothing, and single precision would lose the millimetres of map
-/// coordinates.
+/// pose and image size included, and the same cloud gives the same bytes everywhere. Normals are not written. A
+/// sensor pose that is the identity comes back as none, for many files have it that say nothing by it. Compressing
+/// doubles gains next to nothing, and single precision would lose the millimetres of map coordinates.
 ///
 /// # Errors
 /// When covariances or image size do not fit the points, the sensor pose is not finite, or the

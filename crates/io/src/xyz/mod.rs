@@ -27,10 +27,14 @@ use self::unnamed::{refuse_a_count, refuse_many_columns};
 /// return.
 ///
 /// # Errors
-/// When there is nothing but comments, a column is missing or named twice, a row is too short (between tabs, or
-/// between white space under names: shorter than the first, for its empty values cannot be told) or has more values than there are names so that they
-/// do not tell what is what, a value is no number, a covariance is none, a row
-/// without column names seems to hold several points, the first of four or more such columns counts the rows, or there are more points than the default [`ReadLimits`] allow.
+/// When
+/// - there is nothing but comments, or there are more points than the default [`ReadLimits`] allow,
+/// - a column is missing or named twice,
+/// - a row is too short; between tabs, or between white space under names, where empty values do not show: shorter
+///   than the first,
+/// - a row has more values than there are names, so that these do not tell which is which,
+/// - a value is no number, or a covariance is none,
+/// - without column names, a row seems to hold several points, or the first of four or more columns counts the rows.
 pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
     parse_within(bytes, &ReadLimits::default())
 }

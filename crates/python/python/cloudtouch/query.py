@@ -226,7 +226,7 @@ class Query:
         ValueError
             ``poses`` has the wrong shape or type.
         CloudtouchError
-            All poses are the same, ``tolerance`` is below 1e-5 or not below 1, and what :meth:`run` raises.
+            All poses are the same, ``tolerance`` is below 1e-5 or above 1, and what :meth:`run` raises.
         """
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
         how = _given.flag(screw, "screw"), _given.number(tolerance, "tolerance")

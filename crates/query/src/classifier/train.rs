@@ -17,8 +17,8 @@ use super::surface::Surface;
 
 /// That a pair is apart is not believed of a classifier where the typical standard deviation across
 /// its surface is larger than this, in box lengths: eq. 16 takes f as linear over a few standard
-/// deviations, but f can turn within a kernel width (0.22 at the default γ) and be flat at every
-/// point.
+/// deviations, but f can turn within a kernel width, 1/√(2γ), and be flat at every point. An eighth of that width at
+/// the default γ of 3 (0.41), a quarter at the paper's of 10 (0.22).
 const TRUSTED_STD: f64 = 0.05;
 /// Where it is this share of that off, a loose tolerance may decide.
 const AT_LIMIT: f64 = 0.05;

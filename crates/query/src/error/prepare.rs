@@ -20,9 +20,9 @@ pub enum PrepareError {
         stages: String,
     },
     /// One of several scans cannot be used; its rows are counted from 0, as if it had been given alone.
-    #[error("scan {scan} of {count}: {error}")]
+    #[error("scan {} of {count}: {error}", scan + 1)]
     Scan {
-        /// Which of the scans, from 1.
+        /// Which of the scans, counted from 0.
         scan: usize,
         /// How many there are.
         count: usize,
@@ -30,9 +30,9 @@ pub enum PrepareError {
         error: Box<PrepareError>,
     },
     /// A scan that was merged before: what it says twice would count twice.
-    #[error("scan {scan} is one of those before it, to the point: give each scan once")]
+    #[error("scan {} is one of those before it, to the point: give each scan once", scan + 1)]
     RepeatedScan {
-        /// Which of the scans, from 1.
+        /// Which of the scans, counted from 0.
         scan: usize,
     },
     /// A coordinate is so large that doubles do not tell micrometres apart there.

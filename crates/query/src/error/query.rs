@@ -175,7 +175,7 @@ pub enum QueryError {
     },
     /// The tolerance of a sweep is no share of the path, or too fine a one.
     #[error(
-        "the tolerance is {}: give a share of the path from 1e-5 on and below 1, such as 0.001",
+        "the tolerance is {}: give a share of the path from 1e-5 to 1, such as 0.001",
         number(*value)
     )]
     Tolerance {

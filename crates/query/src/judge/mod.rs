@@ -39,9 +39,10 @@ pub struct ContactEvidence {
     /// most, s being the sum of standard deviations of the crossings there, up to 6 each.
     pub crossing: f64,
     /// n: over how many pieces of surface the bodies are about as near as where they are nearest, and yet
-    /// apart; of two clouds the fewer. A piece with up to 1.5 deviations more than the nearest counts, one with
-    /// 2.5 more not at all, each as surely as it is on one side of the other surface, 2Φ(z) − 1, and one inside
-    /// of a closed mesh against the others. It is large where faces lie along one another: the least of many distances is less, by chance,
+    /// apart; of two clouds the fewer. A piece with up to 1.5 deviations more than the nearest counts in full,
+    /// one with 2.5 more not at all. Each is weighed by how surely it is on one side of the other surface,
+    /// 2Φ(z) − 1, and by the part of its error that it does not share with the pieces about it; one inside of a closed
+    /// mesh is subtracted. The sum is large where faces lie along one another: the least of many distances is less, by chance,
     /// than the distance of the surfaces. `None` where that changes nothing: surfaces that clearly cross, and
     /// a search that was cut short.
     pub extent: Option<f64>,

@@ -73,10 +73,10 @@ impl Path {
         self.legs.len()
     }
 
-    /// A warning of each segment of which rounding decides which way round it turns.
-    pub(super) fn warnings(&self) -> impl Iterator<Item = Warning> {
-        let half_turns = (1..).zip(&self.legs).filter(|(_, leg)| leg.is_half_turn());
-        half_turns.map(|(pose, _)| Warning::HalfTurn { pose })
+    /// A warning of the first segment of which rounding decides which way round it turns.
+    pub(super) fn warning(&self) -> Option<Warning> {
+        let pose = self.legs.iter().position(Leg::is_half_turn)?;
+        Some(Warning::HalfTurn { pose })
     }
 
     /// The pose at a share of the path, from 0 to 1; at the ends beyond them. NaN gives a pose of NaN, which every

@@ -33,9 +33,9 @@ impl Query {
     /// Nothing between poses is missed: over a stretch of the path the probability is bounded by what
     /// [`Self::run`] would find at its middle if every piece of surface came as near, and crossed as
     /// clearly, as the motion lets it. Stretches whose bound is not below the reject threshold are
-    /// halved, down to `tolerance` as a share of the path; what is open then stays in the bounds. A path
-    /// that stays near contact takes up to twice the inverse of the tolerance bounds, which is why that may
-    /// be no finer than [`Self::LEAST_TOLERANCE`].
+    /// halved, down to `tolerance` as a share of the path; what is open then stays in the bounds. On a path
+    /// that stays near contact up to 2 / `tolerance` stretches are bounded; so the tolerance may be no finer than
+    /// [`Self::LEAST_TOLERANCE`].
     /// Poses that the path leads through are asked about where they may matter. With [`Detail::Free`](crate::Detail::Free)
     /// it ends at the first pose that is found not to be free, wherever on the path, some of which are asked about
     /// before anything is bounded: for who wants no more than to know whether the path is free. So it does with
@@ -73,7 +73,7 @@ impl Query {
     /// ```
     ///
     /// # Errors
-    /// When the tolerance is below [`Self::LEAST_TOLERANCE`] or not below 1, and those of [`Self::run`].
+    /// When the tolerance is below [`Self::LEAST_TOLERANCE`] or above 1, and those of [`Self::run`].
     pub fn sweep<'a>(
         &self,
         a: impl Into<BodyRef<'a>>,
@@ -81,7 +81,7 @@ impl Query {
         path: &Path,
         tolerance: f64,
     ) -> Result<Swept, QueryError> {
-        if !(Self::LEAST_TOLERANCE..1.0).contains(&tolerance) {
+        if !(Self::LEAST_TOLERANCE..=1.0).contains(&tolerance) {
             return Err(QueryError::Tolerance { value: tolerance });
         }
         let start = Instant::now();
@@ -135,7 +135,12 @@ impl Sweep<'_> {
             verdict,
             undecided_by: (verdict == Verdict::Undecided)
                 .then(|| doubt.unwrap_or(Undecided::Bounds)),
-            warnings: self.path.warnings().chain(tested.misgivings.into_warnings()).collect(),
+            warnings: self
+                .path
+                .warning()
+                .into_iter()
+                .chain(tested.misgivings.into_warnings())
+                .collect(),
             most_probable: tested.most_probable,
             first: tested.first.map(|at| Reached { at, not_before }),
             certified_free_until: certified / segments,

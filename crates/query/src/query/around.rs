@@ -65,6 +65,8 @@ impl Query {
         if !reach.is_complete || is_enough(reach.deviations, reach.clearness) {
             return Ok(1.0);
         }
-        Ok(at_most(reach.deviations.min(within.deviations), reach.clearness).max(upper))
+        let of_reach = at_most(reach.deviations.min(within.deviations), reach.clearness);
+        // The greater of a number and none is the number.
+        Ok(if of_reach.is_nan() { 1.0 } else { of_reach.max(upper) })
     }
 }

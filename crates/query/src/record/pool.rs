@@ -55,11 +55,14 @@ pub(crate) fn noisy_or_bound(
     rest: f64,
     total: usize,
 ) -> f64 {
-    let pooled = noisy_or(points, closeness);
-    if rest < closeness.share_of_max * max(points) {
-        return pooled;
+    let floor = closeness.share_of_max * max(points);
+    if rest < floor {
+        return noisy_or(points, closeness);
     }
-    1.0 - (1.0 - pooled) * (1.0 - rest).powf(total as f64)
+    // One of them may be a witness in the place of a point that others are close to, which are witnesses then.
+    let likely = points.iter().filter(|p| p.probability >= floor);
+    let all_free: f64 = likely.map(|p| 1.0 - p.probability).product();
+    1.0 - all_free * (1.0 - rest).powf(total as f64)
 }
 
 #[cfg(test)]
@@ -98,6 +101,20 @@ mod tests {
         assert!(noisy_or_bound(&found, &USUAL, 0.45, 100) > 0.99);
         let nothing = noisy_or_bound(&[], &USUAL, 1e-6, 1000);
         assert!((nothing / 1e-3 - 1.0).abs() < 1e-3, "{nothing}");
+    }
+
+    /// One that was left out may take the place of a point between two others, and free both.
+    #[test]
+    fn what_was_left_out_brought_more_than_the_bound() {
+        let at = |x: f64, y: f64, probability| PointProbability {
+            position: Point3::new(x, y, 0.0),
+            ..point(0.0, probability)
+        };
+        let found = [at(0.0, 0.0, 0.5), at(0.0, 0.08, 0.49), at(0.0, -0.08, 0.49)];
+        let left_out = at(-0.09, 0.0, 0.51);
+        let with_it = noisy_or(&[&found[..], &[left_out]].concat(), &USUAL);
+        assert!(with_it > 0.85, "{with_it}");
+        assert!(with_it <= noisy_or_bound(&found, &USUAL, 0.51, 1));
     }
 
     /// By asking all witnesses.

@@ -107,14 +107,19 @@ fn extent(
 
 /// What points so near the sensor are, or near the origin where no sensor is known of.
 fn near_sensor(cloud: &PointCloud, near: usize) -> String {
-    if cloud.is_image() || cloud.sensor_pose.is_some() {
+    if cloud.is_image() {
         return format!(
-            "too near    {near} points within {NEAR} m of where the sensor stood: no returns, left out"
+            "too near    {near} points within {NEAR} m of where the sensor stood: no returns (the models of cameras\n            \
+             and laser scanners leave them out)"
         );
     }
-    // In a map, or about an object, it is a place like others.
+    // In a map, or about an object, it is a place like others, even one that is stated.
+    let (label, place) = match cloud.sensor_pose {
+        Some(_) => ("near sensor", "where the sensor is said to have stood"),
+        None => ("at origin", "it"),
+    };
     format!(
-        "at origin   {near} points within {NEAR} m of it: surface, unless the sensor stood there\n            \
+        "{label:<12}{near} points within {NEAR} m of {place}: surface, unless the sensor stood there\n            \
          (then --min-range {NEAR} leaves them out)"
     )
 }

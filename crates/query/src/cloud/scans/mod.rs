@@ -58,7 +58,7 @@ impl Scans {
         let mut all = Self::none();
         let (mut noise, mut ends) = (Vec::new(), Vec::new());
         for &(scan, by) in scans {
-            let which = ends.len() + 1;
+            let which = ends.len();
             let mut one = Self::of_one(scan, by).map_err(|e| of_scan(e, which, scans.len()))?;
             // Put together at the end: what differs from point to point is then copied once.
             noise.push(mem::replace(&mut one.noise, SensorNoise::from(Vec::new())));

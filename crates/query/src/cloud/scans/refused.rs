@@ -12,7 +12,7 @@ pub(super) fn nothing_left(before: usize, stages: &[StageReport]) -> PrepareErro
     PrepareError::NothingLeft { before, stages: removed.join(", ") }
 }
 
-/// What is wrong with one of several scans; `which` of them, from 1.
+/// What is wrong with one of several scans; `which` of them, counted from 0.
 pub(super) fn of_scan(error: PrepareError, which: usize, count: usize) -> PrepareError {
     match count {
         1 => error,
@@ -58,7 +58,7 @@ pub(super) fn check_for_repeats(points: &[Point3], ends: &[usize]) -> Result<(),
     let repeated = repeated(points, 0..count);
     let before = |end: usize| repeated.partition_point(|&index| (index as usize) < end);
     let (mut start, mut counts) = (0, Vec::new());
-    for (scan, &end) in (1..).zip(ends) {
+    for (scan, &end) in ends.iter().enumerate() {
         let are_all_repeated = before(end) - before(start) == end - start;
         if are_all_repeated && counts.contains(&(end - start)) {
             return Err(PrepareError::RepeatedScan { scan });

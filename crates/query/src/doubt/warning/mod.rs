@@ -226,7 +226,7 @@ pub enum Warning {
     },
     /// Two poses of a path are half a turn apart, or so nearly that rounding decides which way round it goes.
     HalfTurn {
-        /// The first of the two, counted from 1.
+        /// The first of the two, counted from 0.
         pose: usize,
     },
 }

@@ -20,7 +20,7 @@ impl Warning {
                 format!("the {body} has all its points in one place: they span no surface;")
             }
             Self::NoSurface { body, points } => format!(
-                "the {body} has {points} distinct points or corners, all on a line: they span no surface;"
+                "all {points} points or corners of the {body} are on a line: they span no surface;"
             ),
             Self::Missing { body, share } => part(
                 (100.0 * share, "rows", body),
@@ -136,7 +136,8 @@ impl Warning {
                 rounded(reject)
             ),
             Self::HalfTurn { pose } => format!(
-                "from pose {pose} to the next it turns by half a turn, and rounding decides which way round:"
+                "from pose {} to the next it turns by half a turn, and rounding decides which way round:",
+                pose + 1
             ),
         }
     }
@@ -159,11 +160,11 @@ impl Warning {
             Self::Rounded { .. } => "keep them in double precision, or about an origin nearby",
             Self::SensorPose { .. } => {
                 "it looks along z of the file; if the points are in another frame, say where it stood \
-                 (`sensor_pose`, VIEWPOINT of a PCD)"
+                 (`sensor_pose`)"
             }
             Self::SensorTurn { .. } => {
                 "it counts as looking along z of the file; leave the turn out, or correct it \
-                 (`sensor_pose`, VIEWPOINT of a PCD)"
+                 (`sensor_pose`)"
             }
             Self::SensorRange { .. } => "another sensor, or another unit?",
             Self::SensorLayout { .. } => "kinect, stereo or tof?",
@@ -171,7 +172,7 @@ impl Warning {
                 "give the organised cloud; in this one flying pixels stay, unless `outliers` drops them"
             }
             Self::ImagePlace { .. } => {
-                "say where it stood in their frame (`sensor_pose`, VIEWPOINT of a PCD), and leave out rows and columns \
+                "say where it stood in their frame (`sensor_pose`), and leave out rows and columns \
                  alike; without the layout what it did not see counts as empty"
             }
             Self::SelfFilter { .. } => {

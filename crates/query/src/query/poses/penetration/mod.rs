@@ -37,9 +37,9 @@ pub struct Penetration {
     /// How far until it is as likely as not, whichever way that is shortest, m: how deep the object is in, as
     /// far as is known. Of the probability, not of its upper bound.
     pub depth_m: f64,
-    /// Half of how much farther it is until a collision is one standard deviation less likely than not than
-    /// until it is one more likely, along that way, m: what the surfaces leave open of the depth, and not less than
-    /// how closely the way was looked for unless both bodies are exact.
+    /// Half the distance along that way between where a collision has the probability Φ(1) = .84 and where it has
+    /// Φ(−1) = .16, m: what the surfaces leave open of the depth; and, unless both bodies are exact, not less than how
+    /// closely the way was looked for.
     pub std_m: f64,
 }
 

@@ -17,9 +17,9 @@ pub struct UnderPoses {
     pub probability: f64,
     /// Means of the lower and the upper bounds; `probability` lies within.
     pub bounds: [f64; 2],
-    /// The standard error that as many poses drawn at random would leave, and where none of so many
-    /// collides, or all do, that of half a one that does not; what is left is less as a rule, since they
-    /// are spread evenly. 0 where poses that come near enough are out of the question.
+    /// The standard error that the mean would have if as many poses had been drawn at random; where all of them
+    /// collide, or none, as if half a pose did the opposite. As a rule the error is less, for the poses are spread
+    /// evenly. 0 where poses that come near enough are out of the question.
     pub std_error: f64,
     /// How many poses were asked about.
     pub poses: usize,
