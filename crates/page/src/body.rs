@@ -53,7 +53,7 @@ impl From<&cloudtouch::Body> for Shape {
     fn from(body: &cloudtouch::Body) -> Self {
         match body {
             cloudtouch::Body::Cloud(cloud) => Self::cloud(cloud.len(), |index| cloud.point(index)),
-            cloudtouch::Body::Mesh(mesh) => mesh.into(),
+            cloudtouch::Body::Mesh(mesh) => (&**mesh).into(),
         }
     }
 }

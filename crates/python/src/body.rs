@@ -48,13 +48,19 @@ impl Body {
         py.detach(|| self.state.read().map(|state| Arc::clone(&state.prepared)).map_err(broken))
     }
 
+    /// A link of a robot, given as its prepared mesh.
+    pub(crate) fn of_link(mesh: Arc<Mesh>) -> PyResult<Self> {
+        let (vertices, triangles) = mesh.faces();
+        let given = TriangleMesh::new(vertices, triangles.to_vec()).map_err(refused)?;
+        Ok(Self::new(mesh, Given::Mesh(given)))
+    }
+
     /// A mesh as a link that a camera saw.
-    pub(crate) fn mesh(&self, py: Python<'_>) -> PyResult<Mesh> {
-        let of_given = || match &self.state.read().map_err(broken)?.given {
-            Some(Given::Mesh(mesh)) => Mesh::prepare(mesh).map_err(refused),
-            _ => Err(refused("a link of a robot is a Mesh")),
-        };
-        py.detach(of_given)
+    pub(crate) fn mesh(&self, py: Python<'_>) -> PyResult<Arc<Mesh>> {
+        match &*self.now(py)? {
+            Prepared::Mesh(mesh) => Ok(Arc::clone(mesh)),
+            Prepared::Cloud(_) => Err(refused("a link of a robot is a Mesh")),
+        }
     }
 
     /// Changes a cloud in its place, on all threads.
@@ -243,7 +249,7 @@ impl CloudArguments<'_> {
         for (link, pose, padding) in &self.robot {
             let cloud_from_link = Pose::try_from_matrix(&matrix(pose));
             let cloud_from_link = cloud_from_link.map_err(|e| refused_for("robot", e))?;
-            let mesh = Arc::new(link.get().mesh(py)?);
+            let mesh = link.get().mesh(py)?;
             filter.robot.push(SelfMesh { mesh, cloud_from_link, padding: *padding });
         }
         if let Some(resolution) = self.collision_map {

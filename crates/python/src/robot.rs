@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use cloudtouch::geom::{Point3, Pose};
+use cloudtouch::geom::Pose;
 use cloudtouch_robot::{
     JointKind, PathChecked, Robot as Described, RobotChecker as Checker, SURROUNDINGS, Stopped,
     Touching,
@@ -18,7 +18,6 @@ use crate::error::refused;
 use crate::page;
 use crate::pool::on_all_threads;
 use crate::query::{Query, rigid};
-use crate::rows::{corners, rows};
 use crate::scene::{Found, Pair, box_of, found, nobody, pair};
 
 type Joints = BTreeMap<String, f64>;
@@ -26,7 +25,7 @@ type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 /// Name, kind, limits, and what it mimics by which factor and offset.
 type Joint = (String, &'static str, Option<[f64; 2]>, Option<(String, f64, f64)>);
 /// Vertices, triangles and pose.
-type Link<'py> = (Matrix<'py>, Bound<'py, PyArray2<i64>>, Matrix<'py>);
+type Link<'py> = (Body, Matrix<'py>);
 /// Answers at the positions given, how far it is free, segment, time and worst pair of where it stops,
 /// positions looked at, and the verdict.
 type Along<'py> =
@@ -103,7 +102,7 @@ impl Robot {
         Ok(poses.into_iter().map(|(link, pose)| (link.to_owned(), of_pose(py, &pose))).collect())
     }
 
-    /// The shapes of the links where a camera saw them.
+    /// The shapes of the links, and where a camera saw them.
     #[pyo3(signature = (joints, base_pose, /))]
     fn seen<'py>(
         &self,
@@ -115,10 +114,10 @@ impl Robot {
         // The padding is that of the cloud.
         let links = self.described.self_filter(&joints, &base, 0.0).map_err(refused)?;
         let link = |link: cloudtouch::SelfMesh| {
-            let (vertices, triangles): (Vec<Point3>, _) = link.mesh.faces();
-            (rows(py, &vertices), corners(py, triangles), of_pose(py, &link.cloud_from_link))
+            let pose = of_pose(py, &link.cloud_from_link);
+            Ok((Body::of_link(link.mesh)?, pose))
         };
-        Ok(links.into_iter().map(link).collect())
+        links.into_iter().map(link).collect()
     }
 }
 

@@ -19,8 +19,8 @@ use crate::shape::Shape;
 pub enum Body {
     /// A noisy cloud.
     Cloud(Cloud),
-    /// An exact mesh.
-    Mesh(Mesh),
+    /// An exact mesh; a filter that takes it out of scans ([`SelfMesh`](crate::SelfMesh)) may hold it too.
+    Mesh(Arc<Mesh>),
 }
 
 /// A prepared cloud or mesh, borrowed: what a query takes.
@@ -40,6 +40,12 @@ impl From<Cloud> for Body {
 
 impl From<Mesh> for Body {
     fn from(mesh: Mesh) -> Self {
+        Self::Mesh(Arc::new(mesh))
+    }
+}
+
+impl From<Arc<Mesh>> for Body {
+    fn from(mesh: Arc<Mesh>) -> Self {
         Self::Mesh(mesh)
     }
 }

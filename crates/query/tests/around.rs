@@ -18,7 +18,7 @@ fn cloud(shape: &TriangleMesh, spacing: f64, std: f64, seed: u64) -> Body {
 }
 
 fn mesh(shape: &TriangleMesh) -> Body {
-    Body::Mesh(Mesh::prepare(shape).expect("a good mesh"))
+    Body::from(Mesh::prepare(shape).expect("a good mesh"))
 }
 
 /// A turn by an angle about an axis of any length.

@@ -24,7 +24,7 @@ fn says_the_same_at_any_detail(
     let shape = scene::cuboid([0.2; 3]);
     let a = cloud(&shape, std, seed);
     let b = if is_mesh {
-        Body::Mesh(Mesh::prepare(&shape).unwrap())
+        Body::from(Mesh::prepare(&shape).unwrap())
     } else {
         cloud(&shape, std, !seed)
     };

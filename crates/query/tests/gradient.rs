@@ -28,7 +28,7 @@ fn body(mesh: &TriangleMesh, is_mesh: bool, std: f64, seed: u64) -> Body {
     if is_mesh {
         let faces = &mesh.triangles()[usize::from(seed.is_multiple_of(3))..];
         let mesh = TriangleMesh::new(mesh.vertices().to_vec(), faces.to_vec()).unwrap();
-        return Body::Mesh(Mesh::prepare(&mesh).unwrap());
+        return Body::from(Mesh::prepare(&mesh).unwrap());
     }
     let samples = surface::positions(&surface::sample_surface(mesh, 900, seed));
     let points: Vec<Point3> = add_noise(&samples, NoiseKind::Gaussian, std, seed);

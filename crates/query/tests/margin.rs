@@ -22,7 +22,7 @@ fn box_mesh() -> TriangleMesh {
 /// A cloud or a mesh of the same box.
 fn body(is_mesh: bool, count: usize, std: f64, seed: u64) -> Body {
     match is_mesh {
-        true => Body::Mesh(Mesh::prepare(&box_mesh()).unwrap()),
+        true => Body::from(Mesh::prepare(&box_mesh()).unwrap()),
         false => cloud(&box_mesh(), count, std, seed),
     }
 }
@@ -53,7 +53,7 @@ fn a_box_of_few_triangles_is_as_near_as_one_of_many() {
 #[test]
 fn a_clearance_does_not_contradict_the_margins() {
     let query = Query::new(QuerySettings::default()).unwrap();
-    let piano = Body::Mesh(Mesh::prepare(&scene::piano()).unwrap());
+    let piano = Body::from(Mesh::prepare(&scene::piano()).unwrap());
     let mut told = 0;
     for seed in 1..4 {
         let samples = surface::positions(&surface::sample_surface(&scene::room(), 30_000, seed));

@@ -25,7 +25,7 @@ fn cloud(shape: &TriangleMesh, spacing: f64, std: f64, seed: u64) -> Body {
 /// The shape as a cloud or as itself.
 fn body(is_mesh: bool, shape: &TriangleMesh, spacing: f64, std: f64, seed: u64) -> Body {
     match is_mesh {
-        true => Body::Mesh(Mesh::prepare(shape).expect("a good mesh")),
+        true => Body::from(Mesh::prepare(shape).expect("a good mesh")),
         false => cloud(shape, spacing, std, seed),
     }
 }
@@ -156,7 +156,7 @@ fn the_poses_of_a_path_were_not_asked_about() {
 #[test]
 fn what_is_inside_a_closed_mesh_all_the_way_collides_all_the_way() {
     let ball = scene::sphere(0.03, 2);
-    let hall = Body::Mesh(Mesh::prepare(&scene::cuboid([0.6; 3])).expect("a mesh"));
+    let hall = Body::from(Mesh::prepare(&scene::cuboid([0.6; 3])).expect("a mesh"));
     for is_mesh in [false, true] {
         let object = body(is_mesh, &ball, 0.01, 0.001, 9);
         let path = Path::linear(&at(-0.1, 0.0, 0.0), &at(0.1, 0.0, 0.0)).expect("two poses");

@@ -14,7 +14,7 @@ const SPACINGS: f64 = 0.016;
 
 fn body(mesh: &TriangleMesh, is_mesh: bool, std: f64, seed: u64) -> Body {
     if is_mesh {
-        return Body::Mesh(Mesh::prepare(mesh).unwrap());
+        return Body::from(Mesh::prepare(mesh).unwrap());
     }
     let samples = surface::positions(&surface::sample_surface(mesh, 4000, seed));
     let points: Vec<Point3> = add_noise(&samples, NoiseKind::Gaussian, std, seed);

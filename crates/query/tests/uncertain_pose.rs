@@ -23,7 +23,7 @@ fn cloud(mesh: &TriangleMesh, std: f64, seed: u64) -> Body {
 fn bodies(is_mesh: bool, seed: u64) -> (Body, Body) {
     let shape = scene::cuboid([0.2; 3]);
     let b = if is_mesh {
-        Body::Mesh(Mesh::prepare(&shape).unwrap())
+        Body::from(Mesh::prepare(&shape).unwrap())
     } else {
         cloud(&shape, 0.002, !seed)
     };
@@ -127,7 +127,7 @@ fn where_no_pose_comes_near_none_is_asked_about() {
 #[test]
 fn what_only_the_farthest_poses_do_was_never() {
     let plate = cloud(&scene::plane_patch(1.0), 0.002, 5);
-    let block = Body::Mesh(Mesh::prepare(&scene::cuboid([0.2; 3])).unwrap());
+    let block = Body::from(Mesh::prepare(&scene::cuboid([0.2; 3])).unwrap());
     let mean = Pose::from_translation(Vector3::new(0.0, 0.0, 0.2));
     let below = |deviations: f64| normal::cdf(-deviations);
     for (std, most_off) in [(0.05, 0.012), (0.04, 0.005), (0.1, 0.03), (0.03, 0.003)] {

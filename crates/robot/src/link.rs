@@ -1,7 +1,7 @@
 //! What a link is made of, as meshes in its frame.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use cloudtouch::geom::{MeshError, Point3, TriangleMesh, Vector3};
 use cloudtouch::{Body, Mesh};
@@ -20,14 +20,14 @@ pub(crate) struct Shape {
     pub link: usize,
     /// In the frame of the link, m.
     pub triangles: TriangleMesh,
-    /// The same, prepared.
+    /// The same, prepared: for filters of scans, ...
+    pub mesh: Arc<Mesh>,
+    /// ... and for scenes.
     pub body: Arc<Body>,
     /// What it was made from, if that was a file.
     pub uri: Option<String>,
     /// No point of it is farther from the origin of the link, m.
     pub radius: f64,
-    /// The same for filters of scans, once one was asked for.
-    for_filters: OnceLock<Arc<Mesh>>,
 }
 
 /// Where files are, and how large they may be.
@@ -53,18 +53,9 @@ impl Shape {
         let triangles = TriangleMesh::new(vertices, triangles.triangles().to_vec())
             .map_err(|e| refused(e.into()))?;
         let radius = triangles.used_vertices().map(|(_, p)| p.coords.norm()).fold(0.0, f64::max);
-        let body = Arc::new(Body::from(Mesh::prepare(&triangles).map_err(refused)?));
-        Ok(Self { link, triangles, body, uri, radius, for_filters: OnceLock::new() })
-    }
-
-    /// Prepared for filters of scans, the first time only: a robot is filtered out of scan after scan.
-    pub(crate) fn for_filters(&self) -> Option<Arc<Mesh>> {
-        if let Some(mesh) = self.for_filters.get() {
-            return Some(Arc::clone(mesh));
-        }
-        // It was prepared when the robot was read.
-        let mesh = Arc::new(Mesh::prepare(&self.triangles).ok()?);
-        Some(Arc::clone(self.for_filters.get_or_init(|| mesh)))
+        let mesh = Arc::new(Mesh::prepare(&triangles).map_err(refused)?);
+        let body = Arc::new(Body::from(Arc::clone(&mesh)));
+        Ok(Self { link, triangles, mesh, body, uri, radius })
     }
 
     /// Diagonal of its box, m.

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use cloudtouch::SelfMesh;
 use cloudtouch::geom::Pose;
@@ -199,7 +200,7 @@ impl Robot {
     /// The links where a camera saw them, for [`FilterSettings::robot`](cloudtouch::FilterSettings::robot):
     /// points inside, or within `padding` metres of the surface, are removed from its scan. `joints` are
     /// those at the time of the *scan*; at those asked about the filter would remove what is in the way. Meshes are
-    /// prepared for it by the first call, and shared with the next ones.
+    /// those of the robot, shared.
     ///
     /// # Errors
     /// As [`Self::link_poses`].
@@ -210,11 +211,11 @@ impl Robot {
         padding: f64,
     ) -> Result<Vec<SelfMesh>, JointsError> {
         let poses = self.tree.poses(&self.tree.positions(joints)?);
-        let prepared = self.shapes.iter().filter_map(|shape| {
+        let seen = self.shapes.iter().map(|shape| {
             let cloud_from_link = cloud_from_base.after(&poses[shape.link]);
-            Some(SelfMesh { mesh: shape.for_filters()?, cloud_from_link, padding })
+            SelfMesh { mesh: Arc::clone(&shape.mesh), cloud_from_link, padding }
         });
-        Ok(prepared.collect())
+        Ok(seen.collect())
     }
 
     /// By the names that bodies of a scene have: that of the link, with a number from 0 where it has

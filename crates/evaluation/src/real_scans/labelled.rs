@@ -61,7 +61,7 @@ pub(super) fn evaluate(data: &Path) -> Findings {
 fn body(path: &Path) -> Result<Body> {
     let name = file_name(path);
     Ok(match read_geometry(path, LengthUnit::Metres)? {
-        Geometry::Mesh(mesh) => Body::Mesh(Mesh::prepare(&mesh)?),
+        Geometry::Mesh(mesh) => Body::from(Mesh::prepare(&mesh)?),
         Geometry::Cloud(cloud) => {
             let found = SENSORS.iter().find(|(part, _)| name.contains(part));
             let (_, spec) = found.with_context(|| format!("{name}: no sensor is known"))?;

@@ -423,6 +423,12 @@ class Mesh:
         with _naming(path):
             return cls(vertices, triangles)
 
+    @classmethod
+    def _prepared(cls, body: _native.Body) -> Mesh:
+        mesh = cls.__new__(cls)
+        mesh._body = body
+        return mesh
+
     @property
     def vertices(self) -> npt.NDArray[np.float64]:
         """(V, 3): the vertices after merging equal ones, m."""

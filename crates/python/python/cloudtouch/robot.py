@@ -152,7 +152,7 @@ class Robot:
         if not 0 <= padding < math.inf:
             raise ValueError(f"padding is {padding:g}: give metres, 0 or more")
         links = self._robot.seen(self._named(joints, "joints"), _base(base_pose))
-        return tuple(SeenLink(Mesh(vertices, triangles), pose, padding) for vertices, triangles, pose in links)
+        return tuple(SeenLink(Mesh._prepared(body), pose, padding) for body, pose in links)
 
     def _named(self, value: Positions, name: str) -> dict[str, float]:
         value = _arrays.by_name(value)

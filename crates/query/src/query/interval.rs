@@ -187,7 +187,7 @@ mod tests {
         ) {
             let shapes = [scene::cuboid([0.3, 0.2, 0.1]), scene::sphere(0.08, 2)];
             let [a, b] = [0, 1].map(|k| match k == mesh {
-                true => Body::Mesh(Mesh::prepare(&shapes[k]).unwrap()),
+                true => Body::from(Mesh::prepare(&shapes[k]).unwrap()),
                 false => cloud(&shapes[k], counts[k], std, seed.wrapping_add(k as u64)),
             });
             let pose = Pose::from_translation_rpy(Vector3::from(way) * far, [turn, 0.3, 0.0]);
@@ -197,7 +197,7 @@ mod tests {
 
     #[test]
     fn an_interval_beside_what_was_not_seen_is_that_of_a_query_for_each_margin() {
-        let (seen, ball) = (image(1), Body::Mesh(Mesh::prepare(&scene::sphere(0.08, 2)).unwrap()));
+        let (seen, ball) = (image(1), Body::from(Mesh::prepare(&scene::sphere(0.08, 2)).unwrap()));
         for (x, z) in [(0.0, 0.8), (0.6, 1.5), (0.45, 1.9), (-0.9, 2.5), (0.05, 2.3), (0.3, 1.1)] {
             let pose = Pose::from_translation(Vector3::new(x, 0.0, z));
             for share in [0.5, 0.9] {

@@ -326,7 +326,7 @@ mod tests {
             let body = |k: usize, is_refined: bool| {
                 let shape = shape(are_boxes[k]);
                 if k == mesh {
-                    return Body::Mesh(Mesh::prepare(&shape).unwrap());
+                    return Body::from(Mesh::prepare(&shape).unwrap());
                 }
                 let cloud = cloud(&shape, counts[k], std, seed.wrapping_add(k as u64));
                 Body::Cloud(if is_refined { cloud.refined().unwrap() } else { cloud })
@@ -361,7 +361,7 @@ mod tests {
             seed in any::<u64>(),
         ) {
             let mesh = scene::subdivide_to_max_edge(&shape(are_boxes[0]), most_edge);
-            let mesh = Body::Mesh(Mesh::prepare(&mesh).unwrap());
+            let mesh = Body::from(Mesh::prepare(&mesh).unwrap());
             let cloud = cloud(&shape(are_boxes[1]), count, std, seed);
             let cloud = Body::Cloud(if is_refined { cloud.refined().unwrap() } else { cloud });
             let offset = Vector3::new(0.3 * offset, 0.2 * offset, offset);

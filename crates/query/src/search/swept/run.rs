@@ -257,7 +257,7 @@ pub(super) mod tests {
 
     fn body(is_mesh: bool, shape: &TriangleMesh, std: f64, seed: u64) -> Body {
         if is_mesh {
-            return Body::Mesh(Mesh::prepare(shape).unwrap());
+            return Body::from(Mesh::prepare(shape).unwrap());
         }
         let samples = surface::positions(&surface::sample_surface(shape, 160, seed));
         let points = add_noise(&samples, NoiseKind::Gaussian, std, seed);

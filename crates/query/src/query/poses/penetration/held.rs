@@ -118,7 +118,7 @@ mod tests {
             let settings = CloudSettings::new(SensorModel::Isotropic { std });
             let cloud = Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap();
             let cloud = Body::Cloud(if is_refined { cloud.refined().unwrap() } else { cloud });
-            let mesh = Body::Mesh(Mesh::prepare(&shape(shapes[1])).unwrap());
+            let mesh = Body::from(Mesh::prepare(&shape(shapes[1])).unwrap());
             let bodies = match mesh_is_a {
                 true => ((&mesh).into(), (&cloud).into()),
                 false => ((&cloud).into(), (&mesh).into()),
