@@ -1,22 +1,15 @@
 //! A robot: links as meshes, joined to a tree.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use cloudtouch::SelfMesh;
 use cloudtouch::geom::Pose;
-use cloudtouch_io::ReadLimits;
 
-use crate::at_fault;
-use crate::error::{JointsError, RobotError, RobotFault, UnknownLink};
-use crate::essential::essential;
-use crate::joint::{Joint, JointKind};
-use crate::link::{Shape, Sources};
-use crate::nesting;
-use crate::root::{self, Wanted};
-use crate::srdf::disabled_pairs;
-use crate::text;
+use crate::error::{JointsError, UnknownLink};
+use crate::joint::Joint;
+use crate::link::Shape;
+use crate::may_touch::MayTouch;
 use crate::tree::Tree;
 use crate::uri::in_package;
 
@@ -29,115 +22,12 @@ use crate::uri::in_package;
 pub struct Robot {
     pub(crate) tree: Tree,
     pub(crate) shapes: Vec<Shape>,
-    unchecked: Vec<String>,
-    unknown: Vec<String>,
-    /// Pairs of links that may touch, by their names in order.
-    may_touch: BTreeSet<[String; 2]>,
+    pub(crate) unchecked: Vec<String>,
+    pub(crate) unknown: Vec<String>,
+    pub(crate) may_touch: MayTouch,
 }
 
-/// A mesh this many times as large as the robot by its joints is in another unit.
-const LARGEST_LINK: f64 = 20.0;
-/// What a robot reaches at least, m: some have one link and no joint.
-const LEAST_REACH: f64 = 0.5;
-/// A mesh smaller than this is no link, m.
-const SMALLEST_LINK: f64 = 1e-3;
-
 impl Robot {
-    /// Reads a URDF and the meshes it names: `.stl`, `.obj` and `.ply`, in metres times their `scale`.
-    ///
-    /// `packages` are names and folders for `package://`; those in folders around the URDF are found
-    /// without.
-    ///
-    /// # Errors
-    /// When a file is missing or malformed, a number is no number, links are no tree, or a mesh is of
-    /// a size that cannot be meant; see [`RobotFault`].
-    pub fn from_urdf(
-        path: impl AsRef<Path>,
-        packages: &[(String, PathBuf)],
-    ) -> Result<Self, RobotError> {
-        Self::from_urdf_within(path, packages, &ReadLimits::default())
-    }
-
-    /// As [`Self::from_urdf`], with other limits on the file and its meshes than the default ones.
-    ///
-    /// # Errors
-    /// As [`Self::from_urdf`].
-    pub fn from_urdf_within(
-        path: impl AsRef<Path>,
-        packages: &[(String, PathBuf)],
-        limits: &ReadLimits,
-    ) -> Result<Self, RobotError> {
-        let path = path.as_ref();
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let read =
-            || Self::parse(&text::read(path, limits.bytes)?, Sources { folder, packages, limits });
-        read().map_err(|fault| fault.of(path))
-    }
-
-    fn parse(text: &str, sources: Sources<'_>) -> Result<Self, RobotFault> {
-        if text.trim().is_empty() {
-            return Err(RobotFault::Empty);
-        }
-        nesting::check(text)?;
-        root::check(text, Wanted::Urdf)?;
-        let read = |text: &str| {
-            urdf_rs::read_from_string(&essential(text)?)
-                .map_err(|error| RobotFault::Xml { reason: error.to_string() })
-        };
-        let urdf =
-            read(text).map_err(|fault| at_fault::named(fault, text, |alone| read(alone).err()))?;
-        let tree = Tree::try_from_urdf(&urdf)?;
-        let mut shapes = Vec::new();
-        for (index, link) in urdf.links.iter().enumerate() {
-            for collision in &link.collision {
-                shapes.push(Shape::try_from_urdf((index, &link.name), collision, sources)?);
-            }
-        }
-        if shapes.is_empty() {
-            return Err(RobotFault::NoGeometry);
-        }
-        check_sizes(&tree, &shapes)?;
-        let unchecked =
-            urdf.links.iter().filter(|of| of.collision.is_empty() && !of.visual.is_empty());
-        let unchecked = unchecked.map(|link| link.name.clone()).collect();
-        let unknown = Vec::new();
-        let mut robot = Self { tree, shapes, unchecked, unknown, may_touch: BTreeSet::new() };
-        robot.allow_neighbors();
-        Ok(robot)
-    }
-
-    /// Adds the pairs of links that an SRDF says not to check (`disable_collisions`). Links that
-    /// the robot does not have are passed over, for many an SRDF is for several variants, and are named by
-    /// [`Self::unknown_links`].
-    ///
-    /// # Errors
-    /// When the file is missing or malformed.
-    pub fn with_srdf(self, path: impl AsRef<Path>) -> Result<Self, RobotError> {
-        self.with_srdf_within(path, &ReadLimits::default())
-    }
-
-    /// As [`Self::with_srdf`], with other limits on the file than the default ones.
-    ///
-    /// # Errors
-    /// As [`Self::with_srdf`].
-    pub fn with_srdf_within(
-        mut self,
-        path: impl AsRef<Path>,
-        limits: &ReadLimits,
-    ) -> Result<Self, RobotError> {
-        let path = path.as_ref();
-        let pairs = text::read(path, limits.bytes).and_then(|text| disabled_pairs(&text));
-        for [a, b] in pairs.map_err(|fault| fault.of(path))? {
-            for link in [&a, &b] {
-                if !self.tree.links.contains(link) && !self.unknown.contains(link) {
-                    self.unknown.push(link.clone());
-                }
-            }
-            self.allow(a, b);
-        }
-        Ok(self)
-    }
-
     /// The joints from the root outwards.
     pub fn joints(&self) -> &[Joint] {
         &self.tree.joints
@@ -181,7 +71,7 @@ impl Robot {
 
     /// The same of links that there are.
     pub(crate) fn is_allowed(&self, a: &str, b: &str) -> bool {
-        self.may_touch.contains(&in_order(a.to_owned(), b.to_owned()))
+        self.may_touch.has(a, b)
     }
 
     /// Where every link is by positions of the joints, rad and m: from its frame into that of the
@@ -240,53 +130,4 @@ impl Robot {
         };
         self.shapes.iter().map(name).collect()
     }
-
-    fn allow(&mut self, a: String, b: String) {
-        self.may_touch.insert(in_order(a, b));
-    }
-
-    fn allow_neighbors(&mut self) {
-        let solid: BTreeSet<usize> = self.shapes.iter().map(|shape| shape.link).collect();
-        let groups = self.rigid_groups();
-        for &link in &solid {
-            let with_it =
-                solid.iter().filter(|&&other| other < link && groups[other] == groups[link]);
-            // The next with geometry on the way to the base: flanges between have none.
-            let carriers = self.tree.chain(link).map(|joint| self.tree.joints[joint].parent);
-            let next = carriers.into_iter().find(|carrier| solid.contains(carrier));
-            for other in with_it.copied().chain(next).collect::<Vec<usize>>() {
-                self.allow(self.tree.links[link].clone(), self.tree.links[other].clone());
-            }
-        }
-    }
-
-    /// For each link a link that it never moves against, the same for all of them.
-    fn rigid_groups(&self) -> Vec<usize> {
-        let mut groups: Vec<usize> = (0..self.tree.links.len()).collect();
-        for joint in self.tree.joints.iter().filter(|joint| joint.kind == JointKind::Fixed) {
-            groups[joint.child] = groups[joint.parent];
-        }
-        groups
-    }
-}
-
-/// Meshes in millimetres, or scaled twice.
-fn check_sizes(tree: &Tree, shapes: &[Shape]) -> Result<(), RobotFault> {
-    let lengths = tree.joints.iter().map(|joint| joint.origin.translation().norm());
-    // The sum of none is -0.
-    let reach = lengths.fold(0.0, |sum, length| sum + length);
-    for shape in shapes {
-        let (Some(uri), size) = (&shape.uri, shape.size()) else { continue };
-        if size > LARGEST_LINK * reach.max(LEAST_REACH) || size < SMALLEST_LINK {
-            let (link, uri) = (tree.links[shape.link].clone(), uri.clone());
-            return Err(RobotFault::LinkSize { link, uri, size, reach });
-        }
-    }
-    Ok(())
-}
-
-fn in_order(a: String, b: String) -> [String; 2] {
-    let mut pair = [a, b];
-    pair.sort();
-    pair
 }
