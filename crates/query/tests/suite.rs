@@ -19,6 +19,7 @@ mod far_points;
 mod filter;
 mod frames;
 mod free_and_collision;
+mod gone;
 mod gradient;
 mod hard_cases;
 mod hard_leaf_problems;

@@ -35,15 +35,26 @@ impl Raster {
         plane.unwrap_or_else(|| nearest().fold(f64::INFINITY, f64::min))
     }
 
-    /// The range clearly behind the plane that some cells are on, returns being known at least this well, m; `None` where
-    /// they are on none.
+    /// The range clearly behind the plane that some cells are on, as [`Self::plane`].
     fn behind_plane(
+        &self,
+        ray: &Vector3,
+        place: ([f64; 2], [isize; 2]),
+        cells: impl Iterator<Item = ([isize; 2], usize)>,
+        clear: f64,
+    ) -> Option<f64> {
+        self.plane(ray, place, cells, clear).map(|[range, clear]| range + clear)
+    }
+
+    /// The range of the plane that some cells are on along a ray, and how much farther or nearer is clearly behind it or
+    /// before it, m, returns being known at least this well; `None` where they are on none.
+    pub(super) fn plane(
         &self,
         ray: &Vector3,
         (at, cell): ([f64; 2], [isize; 2]),
         cells: impl Iterator<Item = ([isize; 2], usize)>,
         mut clear: f64,
-    ) -> Option<f64> {
+    ) -> Option<[f64; 2]> {
         let mut surface = Surface::default();
         for (aside, cell) in cells {
             clear = clear.max(self.cells[cell].clear());
@@ -51,7 +62,7 @@ impl Raster {
         }
         let range = ray.norm();
         let distance = surface.distance(clear, self.grid.place_in(at, cell))?;
-        Some(distance * range / self.lens.distance(ray, range) + clear)
+        Some([distance * range / self.lens.distance(ray, range), clear])
     }
 
     /// The first cells with returns on all sides of one without, no farther away than across a hole that counts as seen.

@@ -3,6 +3,10 @@
 use cloudtouch_geom::Vector3;
 
 use super::raster::{CLEARLY, Raster};
+use super::straight::REACH;
+
+/// How far off a plane of four cells or more may be, of what a single return may be off.
+const OF_PLANE: f64 = 0.5;
 
 impl Raster {
     /// Whether every return of the cell of a ray, where there is one, and of those around it, some of them on each
@@ -19,6 +23,17 @@ impl Raster {
             }
         }
         has_return == [true; 5] && ray.norm() + CLEARLY * std < nearest
+    }
+
+    /// Whether a place known this well is clearly before the plane that the pixels around its ray are on. A table that is
+    /// seen aslant, or with much noise, has its nearest return well before it. Lines of a panorama are too far apart.
+    pub(super) fn is_before_plane(&self, ray: &Vector3, std: f64) -> bool {
+        let Some(at) = self.pixel().and_then(|_| self.lens.project(ray)) else { return false };
+        let Some(cell) = self.grid.cell(at) else { return false };
+        let plane = self.plane(ray, (at, cell), self.grid.around(cell, [REACH; 2]), 0.0);
+        plane.is_some_and(|[range, clear]| {
+            ray.norm() + (OF_PLANE * clear).hypot(CLEARLY * std) < range
+        })
     }
 
     /// How far away what hides a place is, and its standard deviation, m; `None` where some of what is around the

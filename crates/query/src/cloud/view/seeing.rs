@@ -58,9 +58,11 @@ impl Seeing<'_> {
         self.raster.apart(ray).is_some_and(|apart| apart * ray.norm() > breadth)
     }
 
-    /// Whether the camera looked past a place with this standard deviation (m), in its direction and in all around it.
+    /// Whether the camera looked past a place with this standard deviation (m): all that it met in its direction and
+    /// around it, or the plane that this is on, is clearly behind it.
     pub(in crate::cloud) fn looks_past(&self, place: &Point3, std: f64) -> bool {
-        self.raster.looks_past(&(place - self.image.sensor_origin), std)
+        let ray = place - self.image.sensor_origin;
+        self.raster.looks_past(&ray, std) || self.raster.is_before_plane(&ray, std)
     }
 
     /// What hides a place that is behind returns.
