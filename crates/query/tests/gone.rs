@@ -73,3 +73,30 @@ fn a_plate_taken_from_a_table_left_its_points() {
         );
     }
 }
+
+#[test]
+fn a_bar_that_still_lies_there_stays_as_a_fresh_frame_has_it() {
+    let table = ExactMesh::new(&scene::plane_patch(2.0));
+    let side = 5.0 * STD;
+    let bar = scene::moved(&scene::cuboid([0.3, side, side]), &at(0.0, 0.0, 0.5 * side));
+    let bar = ExactMesh::new(&bar);
+    let by = CloudSettings::new(SensorModel::Isotropic { std: STD });
+    let seen = |step: i32| {
+        frame(&[&table, &bar], &looking_down(f64::from(45 + 4 * step)), 20 + step as u64)
+    };
+    let mut cloud = Cloud::prepare(&seen(0), &by).unwrap();
+    for step in 1..=4 {
+        cloud.replace_frame(&seen(step), &by).unwrap();
+    }
+    let fresh = Cloud::prepare(&seen(4), &by).unwrap();
+    let (query, tool) =
+        (Query::new(QuerySettings::default()).unwrap(), mesh(&scene::cuboid([0.03, 0.03, 0.1])));
+    let is_hit = |cloud: &Cloud, x: f64| {
+        let report = query.run(cloud, &tool, &at(x, 0.0, 0.4 * side + 0.05)).unwrap();
+        assert_ne!(report.verdict, Verdict::Free, "{x}: {report:?}");
+        report.verdict == Verdict::InCollision
+    };
+    let hits = |cloud: &Cloud| (-10..=10).filter(|k| is_hit(cloud, 0.012 * f64::from(*k))).count();
+    let (kept, of_fresh) = (hits(&cloud), hits(&fresh));
+    assert!(of_fresh >= 18 && kept >= of_fresh, "{kept} of {of_fresh}");
+}

@@ -107,7 +107,9 @@ def numbers(value: Any, name: str, shape: tuple[int, ...]) -> npt.NDArray[np.flo
     fits = array.ndim == len(shape) and all(n in (FREE, m) for n, m in zip(shape, array.shape))
     if not fits:
         wanted = str(shape).replace(str(FREE), "N")
-        raise ValueError(f"{name} has the shape {array.shape}: give {wanted}")
+        is_quaternion = shape[-2:] == (4, 4) and array.shape[-1:] == (7,)
+        remedy = ", matrices and not positions with quaternions" if is_quaternion else ""
+        raise ValueError(f"{name} has the shape {array.shape}: give {wanted}{remedy}")
     return np.asarray(_readable(array, name), dtype=np.float64)
 
 

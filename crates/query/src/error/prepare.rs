@@ -58,9 +58,9 @@ pub enum PrepareError {
     },
     /// The noise is so large beside the cloud that its points say nothing.
     #[error(
-        "the noise is {} m (standard deviation) and the cloud {} m across: give the sensor's noise in \
-         metres, such as iso:0.005 for 5 mm, and the unit of the cloud{}",
-        rounded(*std), rounded(*size), sensor_place(*range)
+        "the cloud is {} m across, and its noise is {} m (standard deviation): give the unit of the cloud, if that is not \
+         metres, and the sensor's noise in metres, such as iso:0.005 for 5 mm{}",
+        rounded(*size), rounded(*std), sensor_place(*range)
     )]
     NoiseBeyondSize {
         /// Median of the standard deviations, each the largest of its point, m.
