@@ -25,7 +25,7 @@ const ADVERSARIAL: f64 = 0.25;
 const GEOMETRY_VALUES: usize = DEVIATION_KNOTS.len() * CROSSING_KNOTS.len();
 /// Knots of the noise up to which ordinary scenes are observed. Those beyond are fitted to denser ones, with
 /// the last of these as it is, ...
-pub(crate) const ORDINARY: usize = 3;
+const ORDINARY: usize = 3;
 /// ... and up to this one as that.
 const HELD: usize = 4;
 

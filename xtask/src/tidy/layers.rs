@@ -29,11 +29,9 @@ fn may_use(name: &str) -> Option<&'static [&'static str]> {
             &LAYERS[..1]
         }
         "cloudtouch" => &LAYERS[..4],
-        "cloudtouch-page" => &["cloudtouch"],
-        "cloudtouch-robot" => &["cloudtouch", "cloudtouch-io"],
-        "cloudtouch-cli" | "cloudtouch-python" => {
-            &["cloudtouch", "cloudtouch-io", "cloudtouch-page", "cloudtouch-robot"]
-        }
+        "cloudtouch-page" => &LAYERS[4..5],
+        "cloudtouch-robot" => &LAYERS[4..6],
+        "cloudtouch-cli" | "cloudtouch-python" => &LAYERS[4..8],
         "cloudtouch-benches" | "cloudtouch-fuzzing" | "cloudtouch-evaluation" => &LAYERS[..9],
         "xtask" => &LAYERS,
         _ => return None,

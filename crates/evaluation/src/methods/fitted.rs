@@ -77,22 +77,10 @@ mod tests {
     use cloudtouch_testkit::family::Family;
 
     use super::*;
-    use crate::calibrate::ORDINARY;
 
     #[test]
     fn the_default_of_the_library_is_what_was_fitted() {
         assert_eq!(Fitted::stored().unwrap().all, Judge::default());
-    }
-
-    /// A fit to ordinary scenes alone repeats its last surface for all that is noisier.
-    #[test]
-    fn noise_beyond_that_of_ordinary_scenes_was_fitted_too() {
-        let Judge { by_geometry, .. } = Judge::default();
-        assert_ne!(
-            Some(&by_geometry[ORDINARY - 1]),
-            by_geometry.last(),
-            "run `cargo xtask calibrate --dense --update` as well"
-        );
     }
 
     #[test]

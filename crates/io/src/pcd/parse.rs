@@ -22,11 +22,12 @@ const LARGEST_EXPANSION: usize = 88;
 /// cov_yz, cov_zz (m², all six or none) are passed over. Numbers keep full double precision, and a
 /// row without a return stays as a NaN row. VIEWPOINT becomes
 /// [`sensor_pose`](PointCloud::sensor_pose), its rotation included; points are not moved by it. The identity
-/// counts as not stated, for that is what writers put who do not know. A cloud of one row or one column is not an image.
+/// counts as not stated, for that is what writers put who do not know. A cloud of one row or one column is not an
+/// image.
 ///
 /// # Errors
 /// When the header lacks or contradicts something, the file is shorter than it promises (found
-/// before memory is taken), a value is no number, a covariance is none, VIEWPOINT is none, or there are more points
+/// before memory is taken), a value is no number, a covariance is none, VIEWPOINT is no pose, or there are more points
 /// than the default [`ReadLimits`] allow.
 pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
     parse_within(bytes, &ReadLimits::default())

@@ -201,6 +201,13 @@ mod tests {
         assert_eq!(Judge::default().validate(), Ok(()));
     }
 
+    /// A fit to ordinary scenes alone repeats its last surface for all that is noisier.
+    #[test]
+    fn noise_beyond_that_of_ordinary_scenes_was_fitted_too() {
+        let [.., before, noisiest] = Judge::default().by_geometry;
+        assert_ne!(before, noisiest, "run the second command in the head of fitted.rs as well");
+    }
+
     #[test]
     fn values_against_the_evidence_and_nan_are_refused() {
         let good = Judge::default();

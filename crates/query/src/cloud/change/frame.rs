@@ -20,8 +20,8 @@ impl Cloud {
     /// stood: points that it sees through, or measures again, are removed, and its own are added.
     ///
     /// A point is seen through where the image has returns clearly behind it, in its own direction and
-    /// in all those about two pixels around it, or where these are on a plane that is; it is measured again where a return is within its noise
-    /// and a pixel, or a cell of the collision map that the settings ask for. What is hidden behind returns,
+    /// in all those about two pixels around it, or where these are on a plane that is; it is measured again where
+    /// a return is within its noise and a pixel, or a cell of the collision map that the settings ask for. What is hidden behind returns,
     /// in a hole of the image or beside it by more than that stays as it was.
     /// So the number of points is bounded by the surface there is, and the memory by that and the last
     /// 32 images, which tell what was seen to be empty; those from before a thing came tell nothing of what is within and
