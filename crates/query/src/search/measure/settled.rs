@@ -21,6 +21,8 @@ use super::nearest::Nearest;
 
 /// Leaves of a mesh that reach so many times less far are small beside one of a cloud: a search comes by dozens of them.
 const SMALL: f64 = 0.3;
+/// Where the cloud is refined its tree knows the surface, which leaves fewer for a search to come by.
+const SMALL_BESIDE_REFINED: f64 = 0.1;
 
 /// How near the pieces of a leaf are to a mesh.
 pub(in crate::search) struct Settlement {
@@ -49,7 +51,8 @@ impl NoisyLeaf<'_> {
         side: &mut Side,
         crossings: &mut Crossings,
     ) -> Option<Settlement> {
-        let is_small = leaf.ball.radius < SMALL * self.reach();
+        let small = if self.cloud.prepared().is_refined() { SMALL_BESIDE_REFINED } else { SMALL };
+        let is_small = leaf.ball.radius < small * self.reach();
         let compared = self.compared.next(id, is_small, few)?;
         self.make_room();
         self.end_near_mesh(mesh, within * within, side);
