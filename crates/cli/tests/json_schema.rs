@@ -28,8 +28,14 @@ const REPORT: [&str; 19] = [
 ];
 const CLEARANCE: [&str; 3] = ["mean", "std", "is_bound"];
 const CONTACT: [&str; 5] = ["point", "normal_a_to_b", "probability", "clearance_m", "area_m2"];
-const EVIDENCE: [&str; 5] =
-    ["deviations", "crossing", "extent", "misclassified", "noise_over_spacing"];
+const EVIDENCE: [&str; 6] = [
+    "deviations",
+    "crossing",
+    "extent",
+    "misclassified",
+    "noise_over_spacing",
+    "scatter_over_spacing",
+];
 const PLACEMENT: [&str; 4] = ["scene_box", "object_box", "box_gap_m", "nearest_m"];
 const INPUT: [&str; 4] = ["file", "unit", "sensor", "sensor_because"];
 const UNSEEN: [&str; 7] = [

@@ -151,7 +151,7 @@ fn fit_beyond(mut judge: Judge, records: &[Record]) -> Result<Judge> {
 fn fit_knots(judge: &mut Judge, records: &[Record], knots: Range<usize>) {
     let from = NOISE_KNOTS[knots.start];
     let records: Vec<&Record> =
-        records.iter().filter(|record| record.evidence.noise_over_spacing >= from).collect();
+        records.iter().filter(|record| record.evidence.scatter_over_spacing >= from).collect();
     let is_given = knots.start > 0;
     let noise = Axis { knots: &NOISE_KNOTS[knots.clone()], usual: None };
     // Fewer deviations make a collision more probable: the axis is turned round, and back again.
@@ -159,7 +159,7 @@ fn fit_knots(judge: &mut Judge, records: &[Record], knots: Range<usize>) {
     nearness.reverse();
     let by_all = |record: &&Record| {
         let e = &record.evidence;
-        record.at([e.noise_over_spacing, -e.deviations, e.crossing])
+        record.at([e.scatter_over_spacing, -e.deviations, e.crossing])
     };
     let mut geometry: Vec<SurfaceSample<3>> = records.iter().map(by_all).collect();
     geometry.extend(within(noise.knots));
@@ -232,8 +232,16 @@ mod tests {
     use super::*;
 
     fn evidence(deviations: f64, crossing: f64, count: f64, noise: f64) -> ContactEvidence {
-        let (misclassified, extent, noise_over_spacing) = (Some(count), None, noise);
-        ContactEvidence { deviations, crossing, misclassified, extent, noise_over_spacing }
+        let (misclassified, extent) = (Some(count), None);
+        let (noise_over_spacing, scatter_over_spacing) = (noise, noise);
+        ContactEvidence {
+            deviations,
+            crossing,
+            misclassified,
+            extent,
+            noise_over_spacing,
+            scatter_over_spacing,
+        }
     }
 
     #[test]

@@ -138,15 +138,40 @@ impl<'a> Plane<'a> {
             return *covariance;
         }
         let z = self.height(place) / total.sqrt();
-        let slope = slope(z);
-        let lost = gain * gain.transpose() * (slope * (z + slope) / total);
+        let lost = gain * gain.transpose() * (lost(z) / total);
         Covariance::from_symmetric(&(matrix - lost))
     }
 }
 
+/// Where Φ leaves what doubles tell, its tail.
+const DEEP: f64 = -30.0;
+
+/// r (z + r): the share of the variance across a plane that goes.
+fn lost(z: f64) -> f64 {
+    if z < DEEP {
+        // z + r cancels.
+        return 1.0 - z.powi(-2);
+    }
+    let slope = slope(z);
+    slope * (z + slope)
+}
+
 /// r = φ(z)/Φ(z).
 fn slope(z: f64) -> f64 {
-    // Where Φ leaves what doubles tell, its tail.
-    const DEEP: f64 = -30.0;
     if z < DEEP { -z - 1.0 / z + 2.0 / z.powi(3) } else { normal::density(z) / normal::cdf(z) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Beyond ten thousand deviations all of the variance went, and from some billions on none.
+    #[test]
+    fn what_is_left_far_below_a_plane_falls_with_the_square_of_the_depth() {
+        for z in [-20.0, -29.9, -30.1, -1e3, -1e4, -1e6] {
+            let left = 1.0 - lost(z);
+            assert!((left * z * z - 1.0).abs() < 0.02, "{z}: {left}");
+        }
+        assert!(lost(-1e9) <= 1.0 && lost(-1e9) > 0.999);
+    }
 }

@@ -12,7 +12,7 @@ use crate::error::{NoiseError, check_value_positive};
 /// Points that are not finite are passed over. The order of the points does not matter.
 ///
 /// # Errors
-/// When `resolution` is not positive and finite, or a point is more than 2⁵³ cells from the
+/// When `resolution` is not positive and at most 1e10, or a point is more than 2⁵³ cells from the
 /// origin, where neighbouring cells can no longer be told apart.
 pub fn quantize_to_grid(points: &[Point3], resolution: f64) -> Result<Vec<Point3>, NoiseError> {
     check_value_positive("the grid resolution", resolution)?;

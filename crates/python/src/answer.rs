@@ -29,9 +29,16 @@ pub(crate) fn report<'py>(py: Python<'py>, report: &Report) -> PyResult<Bound<'p
     fields.set_item(intern!(py, "clearance_is_bound"), clearance.is_some_and(|c| c.is_bound))?;
     fields.set_item(intern!(py, "clearance_at_least"), report.clearance_at_least_m)?;
     fields.set_item(intern!(py, "unseen"), report.unseen.map(|unseen| unseen.share()))?;
-    let evidence = report
-        .evidence
-        .map(|e| (e.deviations, e.crossing, e.extent, e.misclassified, e.noise_over_spacing));
+    let evidence = report.evidence.map(|e| {
+        (
+            e.deviations,
+            e.crossing,
+            e.extent,
+            e.misclassified,
+            e.noise_over_spacing,
+            e.scatter_over_spacing,
+        )
+    });
     fields.set_item(intern!(py, "evidence"), evidence)?;
     let warnings: Vec<String> = report.warnings.iter().map(ToString::to_string).collect();
     fields.set_item(intern!(py, "warnings"), warnings)?;

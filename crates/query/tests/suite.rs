@@ -54,6 +54,7 @@ mod scene;
 mod scene_changes;
 mod scene_may_touch;
 mod seen_between_bars;
+mod shared_errors;
 mod slips;
 mod slips_of_sensors;
 mod solved_tightly;

@@ -50,7 +50,7 @@ fn fit_margins(answers: &Answers) -> Result<Vec<Vec<f64>>> {
         let method = answers.index(&name(margin)).context("a margin that was asked about")?;
         for (question, said) in &answers.rows {
             let Said { score, evidence, .. } = said[method].context("an answer")?;
-            let noise = evidence.context("an answer with evidence")?.noise_over_spacing;
+            let noise = evidence.context("an answer with evidence")?.scatter_over_spacing;
             let came = question.signed_distance < margin;
             samples.push(SurfaceSample { at: [noise, -score], came, weight: 1.0 });
         }
@@ -111,6 +111,7 @@ mod tests {
         extent: None,
         misclassified: None,
         noise_over_spacing: 0.3,
+        scatter_over_spacing: 0.3,
     };
 
     fn answers(stated: f64) -> Answers {

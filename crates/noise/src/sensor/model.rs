@@ -75,7 +75,7 @@ impl SensorModel {
     ///
     /// # Errors
     /// When a standard deviation or angle is negative, a baseline, focal length or resolution is
-    /// not positive, or any of them is not finite.
+    /// not positive, or any of them is not finite or more than 1e10.
     pub fn validate(&self) -> Result<(), NoiseError> {
         match *self {
             Self::Exact | Self::PerPoint => Ok(()),

@@ -40,6 +40,8 @@ class Evidence(NamedTuple):
     """Points expected on the wrong side of the best separating surface; ``None`` where there was no doubt."""
     noise_over_spacing: float
     """Noise over the spacing of the points, of both bodies together: what the rest is worth depends on it."""
+    scatter_over_spacing: float
+    """The same as far as the points scatter by the noise that is stated; what they do not show they share."""
 
 
 class PointProbabilities(NamedTuple):

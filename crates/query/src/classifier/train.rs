@@ -159,7 +159,9 @@ fn typical_std_across<'a>(
 ) -> f64 {
     let across = |point: &UncertainPoint| {
         let (_, gradient) = surface.value_and_gradient(&point.mean);
-        gradient.try_normalize(0.0).map_or(0.0, |n| point.covariance.std_along(&n))
+        let normal = gradient.try_normalize(0.0);
+        // A function that is flat there trusts no noise.
+        normal.map_or_else(|| point.covariance.max_std(), |n| point.covariance.std_along(&n))
     };
     let mut stds: Vec<f64> = points.map(across).collect();
     stds.sort_by(f64::total_cmp);

@@ -14,7 +14,7 @@ use crate::filter::StageReport;
 use super::local::{local, origin_for};
 use super::makeup::Makeup;
 use super::makeup::median::median;
-use super::makeup::scatter::{Flattest, Overstated, scatter};
+use super::makeup::scatter::{Overstated, Scatter, scatter};
 use super::makeup::spread::{Sample, sample_of};
 use super::pieces::Pieces;
 use super::preparation::Preparation;
@@ -224,13 +224,13 @@ impl Prepared {
         self.scatter()?.overstated()
     }
 
-    /// How much of the noise that is stated shows in the points, from 0 to 1; none where they do not tell.
-    pub(crate) fn shows_noise(&self) -> f64 {
-        self.scatter().map_or(0.0, Flattest::shows)
+    /// How much of the noise that is stated shows in the points, from 0 to 1; `None` where they do not tell.
+    pub(crate) fn shows_noise(&self) -> Option<f64> {
+        self.scatter().map(Scatter::shows)
     }
 
-    fn scatter(&self) -> Option<Flattest> {
-        let told = || scatter(&self.neighborhoods, &self.scans.noise);
+    fn scatter(&self) -> Option<Scatter> {
+        let told = || scatter(&self.neighborhoods, &self.scans.noise, &self.makeup.places);
         *self.makeup.scatter.get_or_init(told)
     }
 

@@ -25,7 +25,7 @@ pub use knots::{
     NOISE_KNOTS, ODDS_KNOTS, OverDoubt, OverExtent, OverGeometry,
 };
 pub use of_pair::sharp_extent;
-pub(crate) use of_pair::{JudgeOfPair, probability};
+pub(crate) use of_pair::{Blur, JudgeOfPair, probability};
 pub(crate) use within::log_odds_within;
 pub use within::{WITHIN_KNOTS, WITHIN_NOISES};
 
@@ -52,10 +52,12 @@ pub struct ContactEvidence {
     /// noise is as large as the spacing of the points, and no classifier was trained.
     pub misclassified: Option<f64>,
     /// How blurred the samples are: standard deviation of the noise over their spacing, both in the median
-    /// of a body, of both bodies together (the root of the sum of their squares); 0 of exact ones, and more
-    /// than 2 only as far as the points scatter by what is stated. It is no evidence itself, but says what the
-    /// rest is worth.
+    /// of a body, of both bodies together (the root of the sum of their squares); 0 of exact ones. It is no
+    /// evidence itself, but says what the rest is worth.
     pub noise_over_spacing: f64,
+    /// The same as far as the points scatter by the noise that is stated. What they do not show is an error that
+    /// they share, or is not there: then none of many is near by chance. Told of more than a half; below it is the noise.
+    pub scatter_over_spacing: f64,
 }
 
 impl ContactEvidence {
@@ -63,6 +65,10 @@ impl ContactEvidence {
     /// trained.
     pub fn ln_misclassified(&self) -> Option<f64> {
         self.misclassified.map(of_pair::ln_above_floor)
+    }
+
+    pub(crate) fn blur(&self) -> Blur {
+        Blur { noise: self.noise_over_spacing, scatter: self.scatter_over_spacing }
     }
 }
 
@@ -168,27 +174,26 @@ impl Judge {
     /// patch that the classifier was asked about: then they are no less than those by geometry.
     pub fn log_odds(&self, evidence: &ContactEvidence) -> f64 {
         let by_geometry = self.log_odds_by_geometry(evidence);
-        let of_pair = self.for_noise(evidence.noise_over_spacing);
+        let of_pair = self.for_blur(evidence.blur());
         evidence.misclassified.map_or(by_geometry, |count| of_pair.revise(by_geometry, count))
     }
 
     /// Log odds given the geometry alone.
     pub fn log_odds_by_geometry(&self, evidence: &ContactEvidence) -> f64 {
-        let ContactEvidence { extent, noise_over_spacing, .. } = *evidence;
-        let of_pair = self.for_noise(noise_over_spacing);
-        of_pair.with_extent(self.log_odds_by_place(evidence), extent)
+        let of_pair = self.for_blur(evidence.blur());
+        of_pair.with_extent(self.log_odds_by_place(evidence), evidence.extent)
     }
 
     /// Log odds given what geometry says of the place of contact.
     pub fn log_odds_by_place(&self, evidence: &ContactEvidence) -> f64 {
-        let ContactEvidence { deviations, crossing, noise_over_spacing, .. } = *evidence;
-        self.for_noise(noise_over_spacing).log_odds_by_place(deviations, crossing)
+        let ContactEvidence { deviations, crossing, .. } = *evidence;
+        self.for_blur(evidence.blur()).log_odds_by_place(deviations, crossing)
     }
 
-    /// The judge for bodies of such a noise over spacing.
-    pub(crate) fn for_noise(&self, noise_over_spacing: f64) -> JudgeOfPair {
+    /// The judge for bodies that are so blurred.
+    pub(crate) fn for_blur(&self, blur: Blur) -> JudgeOfPair {
         let Self { by_geometry, over_extent, revised } = self;
-        JudgeOfPair::new(by_geometry, over_extent, revised, noise_over_spacing)
+        JudgeOfPair::new(by_geometry, over_extent, revised, blur)
     }
 }
 

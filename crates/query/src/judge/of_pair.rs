@@ -25,7 +25,23 @@ fn sharpness(noise_over_spacing: f64) -> f64 {
     1.0 / (1.0 + BLUR * noise_over_spacing.min(NOISE_KNOTS[EXTENT_NOISES]).powi(2))
 }
 
-/// What a [`Judge`](super::Judge) makes of the evidence of two bodies: noise over spacing keeps along a motion.
+/// How blurred the samples of two bodies are, of both together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Blur {
+    /// The noise that is stated over their spacing.
+    pub noise: f64,
+    /// The same as far as they scatter by it: how many of them are near by chance goes by that.
+    pub scatter: f64,
+}
+
+impl Blur {
+    /// Where all noise shows.
+    pub(crate) fn shown(noise: f64) -> Self {
+        Self { noise, scatter: noise }
+    }
+}
+
+/// What a [`Judge`](super::Judge) makes of the evidence of two bodies: how blurred they are keeps along a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct JudgeOfPair {
     by_geometry: OverGeometry,
@@ -42,21 +58,22 @@ impl JudgeOfPair {
         over_geometry: &[OverGeometry; NOISE_KNOTS.len()],
         over_extent: &[OverExtent; EXTENT_NOISES],
         over_doubt: &OverDoubt,
-        noise_over_spacing: f64,
+        Blur { noise, scatter }: Blur,
     ) -> Self {
-        let (knot, part) = between_knots(&NOISE_KNOTS, noise_over_spacing);
+        let (knot, part) = between_knots(&NOISE_KNOTS, scatter);
         let by_geometry = between([&over_geometry[knot], &over_geometry[knot + 1]], part);
+        let (knot, part) = between_knots(&NOISE_KNOTS, noise);
         let of_extent = |knot: usize| over_extent.get(knot).copied().unwrap_or_else(unchanged);
         let over_extent =
             (knot < EXTENT_NOISES).then(|| between([&of_extent(knot), &of_extent(knot + 1)], part));
-        let believed = believed(noise_over_spacing);
+        let believed = believed(noise);
         let mut revised = *over_doubt;
         for (row, knot) in revised.iter_mut().zip(DOUBT_KNOTS) {
             for value in row {
                 *value = believed * *value + (1.0 - believed) * knot;
             }
         }
-        let sharpness = sharpness(noise_over_spacing);
+        let sharpness = sharpness(noise);
         Self { by_geometry, over_extent, sharpness, revised }
     }
 
@@ -198,7 +215,7 @@ mod tests {
     use super::*;
 
     fn judge(noise_over_spacing: f64) -> JudgeOfPair {
-        Judge::default().for_noise(noise_over_spacing)
+        Judge::default().for_blur(Blur::shown(noise_over_spacing))
     }
 
     #[test]
@@ -206,7 +223,7 @@ mod tests {
         assert_eq!([0.0, 0.5, 0.75, 1.0, f64::INFINITY].map(believed), [1.0, 1.0, 0.5, 0.0, 0.0]);
         let silent = Judge::default().without_classifier();
         assert_eq!(judge(0.0).revised, Judge::default().revised);
-        assert_eq!(judge(1.0).revised, silent.for_noise(0.0).revised);
+        assert_eq!(judge(1.0).revised, silent.for_blur(Blur::shown(0.0)).revised);
         let [full, half] = [0.5, 0.75].map(|noise| judge(noise).revise(0.3, 0.1) - 0.3);
         assert!((half - 0.5 * full).abs() < 1e-12 && full < -0.1, "{full} {half}");
     }

@@ -19,17 +19,17 @@ const WITHIN: [[f64; 9]; WITHIN_NOISES.len()] = [
 /// tells of a collision, surfaces that cross, tells of it.
 const HALF_SPACINGS: f64 = 0.1;
 
-/// Log odds of being within a margin (m) so many deviations away, of bodies of such a noise over spacing whose
-/// samples are `spacing` (m) apart; never less than those of a collision by the same deviations. Continuous, and
+/// Log odds of being within a margin (m) so many deviations away, of bodies that scatter by so much noise over spacing and
+/// whose samples are `spacing` (m) apart; never less than those of a collision by the same deviations. Continuous, and
 /// rising with the margin.
 pub(crate) fn log_odds_within(
     deviations: f64,
     margin: f64,
-    (noise_over_spacing, spacing): (f64, f64),
+    (scatter_over_spacing, spacing): (f64, f64),
     collision: f64,
 ) -> f64 {
     let grid = Grid { rows: &WITHIN_NOISES, columns: &WITHIN_KNOTS, values: &WITHIN };
-    let alone = grid.at(noise_over_spacing, deviations);
+    let alone = grid.at(scatter_over_spacing, deviations);
     // Exact bodies have no spacing: any margin counts in full.
     let share = margin / (margin + HALF_SPACINGS * spacing);
     collision + share * (alone - collision).max(0.0)

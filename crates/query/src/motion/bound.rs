@@ -9,7 +9,7 @@ use crate::doubt::unseen::knows_unseen;
 use crate::error::QueryError;
 use crate::exact::collide;
 use crate::mesh::Mesh;
-use crate::query::{Query, noise_over_spacing};
+use crate::query::{Query, blur};
 use crate::record::CLEAR_DEVIATIONS;
 use crate::search::{greatest_depth, reach_of};
 use crate::stats::Stats;
@@ -46,7 +46,7 @@ impl Drifting<'_> {
             return self.exact((a, b), &local, stats);
         }
         // It keeps along the motion.
-        let judge = settings.judge.for_noise(noise_over_spacing((a, b)));
+        let judge = settings.judge.for_blur(blur((a, b)));
         let at_most = |deviations, clearness| judge.at_most(settings.prior, deviations, clearness);
         let is_above = |deviations: f64, clearness: f64| {
             at_most(deviations, clearness) > cut || clock.is_over()
@@ -68,7 +68,7 @@ impl Drifting<'_> {
     /// collision.
     pub(super) fn is_clear(&self, query: &Query, upper: f64) -> bool {
         let settings = query.settings();
-        let judge = settings.judge.for_noise(noise_over_spacing(self.bodies));
+        let judge = settings.judge.for_blur(blur(self.bodies));
         upper <= judge.at_most(settings.prior, CLEAR_DEVIATIONS, 0.0)
     }
 

@@ -6,7 +6,6 @@ use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
-use crate::judge::ContactEvidence;
 use crate::search::reach_around;
 use crate::stats::Stats;
 
@@ -44,7 +43,7 @@ impl Query {
         };
         let (report, within) = this.within(a, b, a_from_b, way)?;
         let [_, upper] = within.bounds;
-        let Some(ContactEvidence { noise_over_spacing, .. }) = report.evidence else {
+        let Some(evidence) = report.evidence else {
             // Two meshes are exact.
             return Ok(upper);
         };
@@ -52,8 +51,7 @@ impl Query {
             return Ok(1.0);
         }
         let settings = self.settings();
-        let (judge, clock) =
-            (settings.judge.for_noise(noise_over_spacing), this.clock(Instant::now()));
+        let (judge, clock) = (settings.judge.for_blur(evidence.blur()), this.clock(Instant::now()));
         let at_most = |deviations, clearness| judge.at_most(settings.prior, deviations, clearness);
         let is_enough = |deviations: f64, clearness: f64| {
             deviations < THROUGH_DEVIATIONS

@@ -98,7 +98,7 @@ impl Misclassified {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::judge::Judge;
+    use crate::judge::{Blur, Judge};
 
     #[test]
     fn an_indistinct_patch_beside_a_clear_one_was_skipped() {
@@ -106,7 +106,7 @@ mod tests {
         let all = clear.or_more(Misclassified::indistinct(40));
         assert_eq!((all.value, all.bounds), (Some(0.001), [0.001, 40.0]));
         // The clear patch alone would speak for free: what it does not speak of is left to geometry.
-        let judge = Judge::default().for_noise(0.0);
+        let judge = Judge::default().for_blur(Blur::shown(0.0));
         assert!(clear.log_odds(&judge, 0.0) < -0.5);
         assert_eq!(all.log_odds(&judge, 0.0), 0.0);
         assert!(judge.revise(0.0, all.bounds[1]) > 0.1);
@@ -115,7 +115,7 @@ mod tests {
     /// A sheet within a slab is easily separated from its faces, which took its odds down.
     #[test]
     fn a_point_inside_is_misclassified_by_any_surface_between_the_samples() {
-        let judge = Judge::default().for_noise(0.0);
+        let judge = Judge::default().for_blur(Blur::shown(0.0));
         let clear = Misclassified::known(0.001, 0);
         let inside = clear.or_inside(0.9);
         assert_eq!((inside.value, inside.bounds), (Some(0.9), [0.9; 2]));
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn without_an_answer_geometry_has_to_do() {
-        let judge = Judge::default().for_noise(0.0);
+        let judge = Judge::default().for_blur(Blur::shown(0.0));
         assert_eq!(Misclassified::indistinct(12).log_odds(&judge, 0.7), 0.7);
         assert_eq!(Misclassified::NOT_ASKED.log_odds(&judge, -1.0), -1.0);
     }

@@ -20,7 +20,7 @@ mod weigh;
 mod within;
 
 pub use any::NotFree;
-pub(crate) use blur::noise_over_spacing;
+pub(crate) use blur::blur;
 pub use poses::gradient::PoseGradient;
 pub use poses::penetration::Penetration;
 pub use poses::uncertain::{PoseDistribution, UnderPoses};

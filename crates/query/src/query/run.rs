@@ -11,7 +11,7 @@ use crate::mode::Mode;
 use crate::record::{Closeness, Terms};
 use crate::report::Report;
 
-use super::blur::noise_over_spacing;
+use super::blur::blur;
 use super::estimate::estimate;
 use super::settings::{Detail, QuerySettings};
 use super::task::Task;
@@ -106,9 +106,9 @@ impl Query {
 
     pub(super) fn task(&self, start: Instant, bodies: (BodyRef<'_>, BodyRef<'_>)) -> Task<'_> {
         let (settings, classifier) = (&self.settings, self.settings.classifier());
-        let noise_over_spacing = noise_over_spacing(bodies);
-        let judge = settings.judge.for_noise(noise_over_spacing);
-        Task { settings, judge, noise_over_spacing, classifier, clock: self.clock(start) }
+        let blur = blur(bodies);
+        let judge = settings.judge.for_blur(blur);
+        Task { settings, judge, blur, classifier, clock: self.clock(start) }
     }
 
     /// How likely it is that the surfaces behind two bodies collide.

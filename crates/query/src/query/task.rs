@@ -2,7 +2,7 @@
 
 use crate::classifier::{ClassifierSettings, Clock};
 
-use crate::judge::JudgeOfPair;
+use crate::judge::{Blur, JudgeOfPair};
 
 use super::settings::QuerySettings;
 
@@ -14,7 +14,7 @@ pub(super) struct Task<'a> {
     /// That of the settings for these bodies.
     pub judge: JudgeOfPair,
     /// What it is for.
-    pub noise_over_spacing: f64,
+    pub blur: Blur,
     pub classifier: ClassifierSettings,
     pub clock: Clock,
 }

@@ -40,7 +40,8 @@ impl Weighed<'_> {
             crossing: 0.0,
             extent: None,
             misclassified: None,
-            noise_over_spacing: task.noise_over_spacing,
+            noise_over_spacing: task.blur.noise,
+            scatter_over_spacing: task.blur.scatter,
         };
         let by_place = task.judge.log_odds_by_place(MOST_DEVIATIONS, 0.0);
         Self {
@@ -78,7 +79,8 @@ pub(super) fn weigh<'a>(
         crossing: found.crossings.clearness().ln_1p(),
         extent: None,
         misclassified: None,
-        noise_over_spacing: task.noise_over_spacing,
+        noise_over_spacing: task.blur.noise,
+        scatter_over_spacing: task.blur.scatter,
     };
     let by_place = judge.log_odds_by_place(of_geometry.deviations, of_geometry.crossing);
     let is_complete = found.is_complete && !looked.is_cut_short;

@@ -141,7 +141,7 @@ impl<'a> BeyondEvidence<'a> {
         local: Pose,
         evidence: ContactEvidence,
     ) -> Self {
-        let judge = query.settings().judge.for_noise(evidence.noise_over_spacing);
+        let judge = query.settings().judge.for_blur(evidence.blur());
         let spacing = a.shape().spacing().max(b.shape().spacing());
         Self { query, bodies: (a, b), local, judge, evidence, spacing }
     }
@@ -149,12 +149,12 @@ impl<'a> BeyondEvidence<'a> {
     /// How likely they are within a margin that the nearest pieces are so many deviations beyond; the fewer, the
     /// likelier.
     pub(super) fn probability(&self, beyond: f64, margin: f64) -> f64 {
-        let ContactEvidence { deviations, crossing, extent, noise_over_spacing, .. } =
+        let ContactEvidence { deviations, crossing, extent, scatter_over_spacing, .. } =
             self.evidence;
         let beyond = beyond.min(deviations);
         let by_place = self.judge.log_odds_by_place(beyond, crossing);
         let collision = self.judge.with_extent(by_place, extent);
-        let blur = (noise_over_spacing, self.spacing);
+        let blur = (scatter_over_spacing, self.spacing);
         let log_odds = log_odds_within(beyond, margin, blur, collision);
         probability(log_odds, self.query.settings().prior)
     }

@@ -16,7 +16,7 @@ use crate::check::coordinates::{LARGEST_COORDINATE, bad_entry};
 use crate::classifier::Clock;
 use crate::doubt::of_pair::{coarse_beside, is_large_object};
 use crate::doubt::warning::Which;
-use crate::judge::{MOST_DEVIATIONS, NOISE_KNOTS, probability};
+use crate::judge::{Blur, EXTENT_NOISES, MOST_DEVIATIONS, NOISE_KNOTS, probability};
 use crate::query::Query;
 use crate::record::Terms;
 use crate::search::SOUGHT;
@@ -39,15 +39,19 @@ pub(super) struct BroadPhase {
 impl BroadPhase {
     pub(super) fn new(query: &Query) -> Self {
         let settings = query.settings();
-        // Whatever the noise of a pair: between the knots log odds are between theirs.
-        let of_nothing = |noise| {
-            let judge = settings.judge.for_noise(noise);
+        // However blurred a pair is: between the knots log odds are between theirs.
+        let of_nothing = |blur| {
+            let judge = settings.judge.for_blur(blur);
             let [_, most] = judge.with_any_extent(judge.log_odds_by_place(MOST_DEVIATIONS, 0.0));
             most
         };
-        let by_geometry = NOISE_KNOTS.into_iter().map(of_nothing).fold(f64::NEG_INFINITY, f64::max);
+        let with_noise = |scatter| {
+            NOISE_KNOTS[..=EXTENT_NOISES].iter().map(move |&noise| Blur { noise, scatter })
+        };
+        let blurs = NOISE_KNOTS.into_iter().flat_map(with_noise);
+        let by_geometry = blurs.map(of_nothing).fold(f64::NEG_INFINITY, f64::max);
         // Of a pair that is open the classifier could say the most, where it is believed in full.
-        let revised = settings.judge.for_noise(0.0).revise(by_geometry, f64::INFINITY);
+        let revised = settings.judge.for_blur(Blur::shown(0.0)).revise(by_geometry, f64::INFINITY);
         let log_odds = by_geometry.max(revised);
         let nothing_is_free = probability(log_odds, settings.prior) < settings.reject;
         let clock = query.clock(Instant::now());

@@ -17,7 +17,7 @@ use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_of_spaci
 use crate::cloud::makeup::clumps::{Clumps, clumps};
 use crate::cloud::makeup::layout::{BESIDE, Layout};
 use crate::cloud::makeup::median::median;
-use crate::cloud::makeup::scatter::Flattest;
+use crate::cloud::makeup::scatter::{Scatter, few_of};
 use crate::cloud::makeup::spread::{SAMPLE, Sample};
 use crate::filter::StageReport;
 use crate::some::some_of;
@@ -79,8 +79,10 @@ pub(crate) struct Makeup {
     /// How far apart coordinates are, m, where that is more than the noise.
     pub step: Option<f64>,
     pub sensor_doubts: Vec<SensorDoubt>,
-    /// What points scatter by; told when first asked for.
-    pub scatter: OnceLock<Option<Flattest>>,
+    /// Some of the points, from all over it, ...
+    pub places: Vec<usize>,
+    /// ... and what points scatter by there; told when first asked for.
+    pub scatter: OnceLock<Option<Scatter>>,
 }
 
 impl Makeup {
@@ -104,6 +106,7 @@ impl Makeup {
             missing,
             step,
             sensor_doubts,
+            places: few_of(&sample.indices),
             scatter: OnceLock::new(),
         }
     }

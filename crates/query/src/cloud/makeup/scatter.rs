@@ -1,15 +1,18 @@
 //! How far points are off the surface they are on, beside what is stated of their noise.
 
+use std::cell::OnceCell;
+
 use cloudtouch_geom::{Matrix3, Vector3};
 use cloudtouch_noise::{Neighborhoods, SensorNoise};
 
 use super::spread::spread;
 
-/// Places that are looked about, and points that are looked at from each, at most.
+/// Places that are looked about.
 const PLACES: usize = 24;
-const POINTS: usize = 4000;
-/// Where these are too sparse, so many of the nearest are.
+/// So many of the nearest points are looked at from each, ...
 const NEAREST: usize = 96;
+/// ... and of all points so many at most, where these do not reach as far as is looked.
+const POINTS: usize = 4000;
 /// A plane through fewer of them tells nothing.
 const LEAST: usize = 12;
 /// Within this many standard deviations of the noise, ...
@@ -20,7 +23,7 @@ const NARROWEST: f64 = 0.05;
 /// own is the root of a fifth.
 const OF_BALL: f64 = 0.44;
 /// What is on a plane to this part of its noise was rounded to one, as the steps of a disparity are, or is a
-/// scan of a single line: it tells nothing.
+/// scan of a single line: it is not overstated.
 const EXACT: f64 = 1e-3;
 /// Of the noise that is stated they are off a plane by more than this part, whatever the surface is, ...
 const LEAST_SHARE: f64 = 0.15;
@@ -37,28 +40,52 @@ pub(crate) struct Overstated {
 }
 
 /// What points scatter by where a fourth of the places of a cloud are flatter: elsewhere the surface itself may
-/// be bent, or a board. `None` where places have too few points about them to tell.
-pub(in crate::cloud) fn scatter(cloud: &Neighborhoods, noise: &SensorNoise) -> Option<Flattest> {
-    let [places, others] = [PLACES, POINTS].map(|count| spread(cloud.points(), count));
-    let mut found: Vec<Flattest> =
-        places.iter().filter_map(|&at| flattest(at, cloud, noise, &others)).collect();
-    // Places with too few points about them tell nothing.
-    if 2 * found.len() < places.len() {
-        return None;
-    }
-    found.sort_by(|p, q| p.share.total_cmp(&q.share));
-    found.get(found.len() / 4).copied()
+/// be bent, or a board.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scatter {
+    /// As a part of what the noise that is stated would make of them.
+    share: f64,
+    overstated: Option<Overstated>,
 }
 
-impl Flattest {
-    /// Far flatter than what is stated leaves them: only errors that neighbours share could be so large.
+/// Every so-manieth of a sample of the points.
+pub(super) fn few_of(sample: &[usize]) -> Vec<usize> {
+    sample.iter().copied().step_by(sample.len().div_ceil(PLACES).max(1)).collect()
+}
+
+/// About some places of a cloud; `None` where these have too few points about them to tell.
+pub(in crate::cloud) fn scatter(
+    cloud: &Neighborhoods,
+    noise: &SensorNoise,
+    places: &[usize],
+) -> Option<Scatter> {
+    let all = OnceCell::new();
+    // PERF: to choose from all points takes longer than everything else here.
+    let others = || all.get_or_init(|| spread(cloud.points(), POINTS)).as_slice();
+    let found = places.iter().filter_map(|&at| flattest(at, cloud, noise, others));
+    let (mut shares, flattest): (Vec<f64>, Vec<Option<Flattest>>) = found.unzip();
+    // Places with too few points about them tell nothing.
+    let tell = |count: usize| 2 * count >= places.len();
+    if !tell(shares.len()) {
+        return None;
+    }
+    shares.sort_by(f64::total_cmp);
+    let mut flattest: Vec<Flattest> = flattest.into_iter().flatten().collect();
+    flattest.sort_by(|p, q| p.share.total_cmp(&q.share));
+    let fourth = flattest.get(flattest.len() / 4).filter(|_| tell(flattest.len()));
+    let overstated = fourth.filter(|of| of.share < LEAST_SHARE).map(|of| of.noise);
+    Some(Scatter { share: *shares.get(shares.len() / 4)?, overstated })
+}
+
+impl Scatter {
+    /// Far flatter than what is stated leaves them: only errors that neighbours share could be so large. Not where they
+    /// were rounded to planes.
     pub(in crate::cloud) fn overstated(self) -> Option<Overstated> {
-        let Self { share, stated, seen } = self;
-        (share < LEAST_SHARE).then_some(Overstated { stated, seen })
+        self.overstated
     }
 
-    /// How much of the noise that is stated shows in the points, from 0, where it is
-    /// [overstated](Self::overstated), to 1.
+    /// How much of the noise that is stated shows in the points, from 0, where it is overstated, or all near one
+    /// another err alike, to 1.
     pub(in crate::cloud) fn shows(self) -> f64 {
         ((self.share - LEAST_SHARE) / (USUAL_SHARE - LEAST_SHARE)).clamp(0.0, 1.0)
     }
@@ -66,25 +93,28 @@ impl Flattest {
 
 /// The scale at which the points about a place are on a plane best, beside their noise.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Flattest {
+struct Flattest {
     /// What they are off it, as a part of what the noise would make of them.
     share: f64,
-    stated: f64,
-    seen: f64,
+    noise: Overstated,
 }
 
-fn flattest(
+/// The least share at any scale, and where that is the least of those that were not rounded to a plane.
+fn flattest<'a>(
     at: usize,
     cloud: &Neighborhoods,
     noise: &SensorNoise,
-    others: &[usize],
-) -> Option<Flattest> {
+    others: impl Fn() -> &'a [usize],
+) -> Option<(f64, Option<Flattest>)> {
     let points = cloud.points();
     let std = noise[at].max_std();
-    let mut far: Vec<Vector3> = others.iter().map(|&i| points[i] - points[at]).collect();
+    let mut radius = WIDEST * std;
     let near = cloud.nearest(at, NEAREST).into_iter();
     let mut near: Vec<Vector3> = near.map(|near| points[near.index] - points[at]).collect();
-    let mut radius = WIDEST * std;
+    let are_all = near.last().is_none_or(|last| last.norm() > radius);
+    let others = if are_all { &[] } else { others() };
+    let mut far: Vec<Vector3> = others.iter().map(|&i| points[i] - points[at]).collect();
+    let mut least = f64::INFINITY;
     let mut best: Option<Flattest> = None;
     while radius >= NARROWEST * std {
         far.retain(|offset| offset.norm() <= radius);
@@ -96,12 +126,13 @@ fn flattest(
         let (normal, seen) = off_plane(offsets);
         let stated = noise[at].variance_along(&normal).sqrt();
         let share = seen / stated.min(OF_BALL * radius);
-        if share > EXACT && best.as_ref().is_none_or(|best| share < best.share) {
-            best = Some(Flattest { share, stated, seen });
+        least = least.min(share);
+        if share > EXACT && best.is_none_or(|best| share < best.share) {
+            best = Some(Flattest { share, noise: Overstated { stated, seen } });
         }
         radius *= 0.5;
     }
-    best
+    least.is_finite().then_some((least, best))
 }
 
 /// The normal of the plane through places by least squares, and their standard deviation from it.

@@ -15,7 +15,8 @@ pub(in crate::search) fn nearest_to_origin([a, b, c]: &[Vector3; 3]) -> Vector3 
         return *b;
     }
     let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+    // Not of an edge without length.
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
         return a + ab * (d1 / (d1 - d3));
     }
     let (d5, d6) = (-ab.dot(c), -ac.dot(c));
@@ -42,6 +43,16 @@ mod tests {
 
     fn vector() -> impl Strategy<Value = Vector3> {
         (-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64).prop_map(|(x, y, z)| Vector3::new(x, y, z))
+    }
+
+    /// One lost its nearest place: a wire that two corners of became one read free.
+    #[test]
+    fn two_corners_at_one_place_leave_an_edge() {
+        let (p, q) = (Vector3::new(-1.0, 0.5, 0.0), Vector3::new(1.0, 0.5, 0.0));
+        for corners in [[p, p, q], [p, q, p], [q, p, p], [q, q, p], [q, p, q], [p, q, q]] {
+            assert_eq!(nearest_to_origin(&corners), Vector3::new(0.0, 0.5, 0.0));
+        }
+        assert_eq!(nearest_to_origin(&[p; 3]), p);
     }
 
     proptest! {
