@@ -175,6 +175,18 @@ pub(crate) mod tests {
         }
     }
 
+    /// Nothing but these; all noise shows.
+    pub(crate) fn evidence(deviations: f64, crossing: f64, noise: f64) -> ContactEvidence {
+        ContactEvidence {
+            deviations,
+            crossing,
+            extent: None,
+            misclassified: None,
+            noise_over_spacing: noise,
+            scatter_over_spacing: noise,
+        }
+    }
+
     #[test]
     fn what_is_no_answer_is_refused() {
         let said = Said::score(0.0, Instant::now());

@@ -230,18 +230,10 @@ mod tests {
     use cloudtouch_geom::seed;
 
     use super::*;
+    use crate::answers::tests::evidence as by_geometry;
 
     fn evidence(deviations: f64, crossing: f64, count: f64, noise: f64) -> ContactEvidence {
-        let (misclassified, extent) = (Some(count), None);
-        let (noise_over_spacing, scatter_over_spacing) = (noise, noise);
-        ContactEvidence {
-            deviations,
-            crossing,
-            misclassified,
-            extent,
-            noise_over_spacing,
-            scatter_over_spacing,
-        }
+        ContactEvidence { misclassified: Some(count), ..by_geometry(deviations, crossing, noise) }
     }
 
     #[test]

@@ -100,19 +100,8 @@ fn within(answers: &Answers, margin: f64) -> Answers {
 mod tests {
     use std::time::Instant;
 
-    use cloudtouch::ContactEvidence;
-
     use super::*;
-    use crate::answers::tests::question;
-
-    const EVIDENCE: ContactEvidence = ContactEvidence {
-        deviations: 2.0,
-        crossing: 0.0,
-        extent: None,
-        misclassified: None,
-        noise_over_spacing: 0.3,
-        scatter_over_spacing: 0.3,
-    };
+    use crate::answers::tests::{evidence, question};
 
     fn answers(stated: f64) -> Answers {
         let mut answers = Answers { methods: MARGINS.map(name).to_vec(), rows: Vec::new() };
@@ -120,11 +109,10 @@ mod tests {
             // A tenth of them is 2 cm apart, the others half a metre.
             let distance = if pose % 10 == 0 { 0.02 } else { 0.5 };
             let said = |margin: f64| {
-                let score = (distance - margin) / 0.01;
                 let probability =
                     if margin == 0.03 { stated } else { f64::from(distance < margin) };
-                let evidence = Some(EVIDENCE);
-                let score = Said::score(score, Instant::now());
+                let evidence = Some(evidence(2.0, 0.0, 0.3));
+                let score = Said::score((distance - margin) / 0.01, Instant::now());
                 Some(Said { probability: Some(probability), evidence, ..score })
             };
             let question = Question { signed_distance: distance, ..question("a", 0, pose, false) };
