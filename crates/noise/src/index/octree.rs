@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
-use cloudtouch_geom::{Point3, bounding_box};
+use cloudtouch_geom::{Point3, Vector3, bounding_box};
 
 use crate::index::morton::{coordinates, interleaved};
 
 /// Halvings of the box around all points, along each axis.
 const LEVELS: u32 = 20;
+/// Points that the box about most of them is told from, at most.
+const SAMPLE: usize = 1024;
 /// Rounding of coordinates in the cells, and of distances, in parts of a width, generously.
 const ROUNDING: f64 = 1e-8;
 
@@ -36,14 +38,16 @@ pub(crate) struct Cell {
 impl Octree {
     /// Of points named by their indices, all of them finite.
     pub(crate) fn of(points: &[Point3], indices: &[u32]) -> Self {
-        let of_all = indices.iter().map(|&index| &points[index as usize]);
-        let (low, high) = bounding_box(of_all).unwrap_or_default();
+        let (low, high) = box_about_most(points, indices);
         let longest = (high - low).max();
-        let scale = f64::from((1_u32 << LEVELS) - 1) / longest;
+        let last = f64::from((1_u32 << LEVELS) - 1);
+        let scale = last / longest;
         // Points that are all but at one place are not told apart by cells.
         let scale = if scale.is_finite() { scale } else { 0.0 };
+        // Who is beyond the box is in the cells at its border: nearer to those inside than it is, so that it is among
+        // what is around them wherever it is so near.
         let key = |point: &Point3| {
-            interleaved([0, 1, 2].map(|axis| ((point[axis] - low[axis]) * scale) as u64))
+            interleaved([0, 1, 2].map(|axis| ((point[axis] - low[axis]) * scale).min(last) as u64))
         };
         let keyed =
             |&index: &u32| u128::from(key(&points[index as usize])) << 32 | u128::from(index);
@@ -164,6 +168,31 @@ impl Octree {
     }
 }
 
+/// Corners of a box about all points but those that are far beyond nearly all others: with these in it cells would be too
+/// wide to tell the rest apart.
+fn box_about_most(points: &[Point3], indices: &[u32]) -> (Point3, Point3) {
+    let of_all = indices.iter().map(|&index| &points[index as usize]);
+    let (low, high) = bounding_box(of_all).unwrap_or_default();
+    let some = indices.iter().step_by(indices.len().div_ceil(SAMPLE).max(1));
+    let some: Vec<&Point3> = some.map(|&index| &points[index as usize]).collect();
+    let rank = some.len() / 100;
+    if rank == 0 {
+        return (low, high);
+    }
+    let mut most = [low, high];
+    for axis in 0..3 {
+        let mut along: Vec<f64> = some.iter().map(|point| point[axis]).collect();
+        along.sort_unstable_by(f64::total_cmp);
+        (most[0][axis], most[1][axis]) = (along[rank], along[along.len() - 1 - rank]);
+    }
+    let width = (most[1] - most[0]).max();
+    if width <= 0.0 {
+        return (low, high);
+    }
+    let room = Vector3::repeat(width);
+    (low.sup(&(most[0] - room)), high.inf(&(most[1] + room)))
+}
+
 #[cfg(test)]
 mod tests {
     use cloudtouch_geom::seed;
@@ -196,10 +225,26 @@ mod tests {
 
     #[test]
     fn what_is_around_a_cell_leaves_none_out_that_is_so_near() {
-        let tree = Octree::of(&points(), &(0..3000).collect::<Vec<_>>());
+        let with_strays = |strays: &[f64]| {
+            let mut points = points();
+            points.extend(strays.iter().map(|&far| Point3::new(0.4, far, -far)));
+            points
+        };
+        let tree_of =
+            |points: &[Point3]| Octree::of(points, &(0..points.len() as u32).collect::<Vec<_>>());
+        let alone = tree_of(&points());
+        // Some beyond the box are as near to those inside as these to one another.
+        for strays in [&[][..], &[1e6], &[-1e6, 3.0, 3.001, 8.0, 8.0, 8.002]] {
+            let tree = tree_of(&with_strays(strays));
+            assert!(tree.finest < 4.0 * alone.finest);
+            what_is_around_leaves_none_out(&tree);
+        }
+    }
+
+    fn what_is_around_leaves_none_out(tree: &Octree) {
         for cell in tree.leaves(20).iter().flat_map(|leaf| [leaf.clone(), tree.parent(leaf)]) {
             let mut around = Vec::new();
-            let radius = tree.visit_around(&cell, 3000, |point| around.push(*point)).unwrap();
+            let radius = tree.visit_around(&cell, 4000, |point| around.push(*point)).unwrap();
             for own in &tree.points()[cell.range] {
                 let is_near = |other: &&Point3| (*other - own).norm() <= radius;
                 let near = |all: &[Point3]| all.iter().filter(is_near).count();
