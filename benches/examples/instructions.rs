@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-use cloudtouch::{Cloud, CloudSettings, Detail, Judge, Query, QuerySettings};
+use cloudtouch::{Body, Cloud, CloudSettings, Detail, Judge, Mesh, Query, QuerySettings};
 use cloudtouch_benches::leaf::bowl_over_floor;
 use cloudtouch_benches::piano_room::{NOISE, classes, piano, prepared, room};
 use cloudtouch_benches::sphere::sphere;
@@ -17,6 +17,7 @@ use cloudtouch_bvh::{Sought, SurfaceFlow, Tree, TreeSettings, visit_surfaces};
 use cloudtouch_geom::{Pose, Vector3};
 use cloudtouch_noise::{Neighborhoods, NoiseModel, NoiseSettings, Scratch, SensorModel};
 use cloudtouch_svm::{Class, Kernel, Problem, Sample, Settings, Solver};
+use cloudtouch_testkit::scene;
 
 /// Points of a body where nothing else is said.
 const POINTS: usize = 3000;
@@ -27,10 +28,11 @@ const GROWTH: f64 = 0.2;
 type Run = fn() -> u64;
 
 /// What is counted.
-const KERNELS: [(&str, Run); 6] = [
+const KERNELS: [(&str, Run); 7] = [
     ("box pair", box_pairs),
-    ("query near contact by geometry alone", || query(1)),
-    ("query in deep overlap by geometry alone", || query(2)),
+    ("query near contact by geometry alone", || query(1, &piano_cloud().into())),
+    ("query in deep overlap by geometry alone", || query(2, &piano_cloud().into())),
+    ("query near contact with a mesh by geometry alone", || query(1, &piano_mesh().into())),
     ("refined point", refined_points),
     ("leaf problem of 2 x 20 points", leaf_problems),
     ("point of a tree built", tree_points),
@@ -123,14 +125,23 @@ fn box_pairs() -> u64 {
     })
 }
 
-fn query(class: usize) -> u64 {
-    let [room, piano]: [Cloud; 2] = [room(POINTS), piano(POINTS)]
-        .map(|cloud| prepared(&cloud).refined().expect("ordinary noise"));
+fn piano_cloud() -> Cloud {
+    prepared(&piano(POINTS)).refined().expect("ordinary noise")
+}
+
+/// Of some ten thousand triangles.
+fn piano_mesh() -> Mesh {
+    let fine = scene::subdivide_to_max_edge(&scene::piano(), 0.13);
+    Mesh::prepare(&fine).expect("a good mesh")
+}
+
+fn query(class: usize, piano: &Body) -> u64 {
+    let room = prepared(&room(POINTS)).refined().expect("ordinary noise");
     let judge = Judge::default().without_classifier();
     let settings = QuerySettings { judge, detail: Detail::Probability, ..Default::default() };
     let query = Query::new(settings).expect("good settings");
     let pose = classes()[class].pose.scene_from_object;
-    let run = || query.run(&room, &piano, &pose).expect("a finite pose");
+    let run = || query.run(&room, piano, &pose).expect("a finite pose");
     // What a first query computes once is no part of it.
     run();
     measured(&mut || {

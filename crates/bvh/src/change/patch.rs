@@ -35,8 +35,8 @@ impl Tree {
     ///
     /// # Errors
     /// When a coordinate, covariance or weight of one that is added is not a usable number, an index is
-    /// named twice or was never given out, their number is not that of the indices without one, or
-    /// none would be left; the tree is then unchanged.
+    /// named twice or was never given out, their number is not that of the indices without one,
+    /// none would be left, or ([`TreeError::Count`] too) a primitive was removed before; the tree is then unchanged.
     pub fn patch(
         &mut self,
         before: &[Option<u32>],

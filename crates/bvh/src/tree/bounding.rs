@@ -19,8 +19,8 @@ impl Tree {
     /// threads of the pool.
     ///
     /// # Errors
-    /// [`TreeError::LeafBounds`] when a bound is negative or NaN, or a shift infinite; the tree is
-    /// then unchanged.
+    /// [`TreeError::LeafBounds`] when a bound is negative or NaN, or a shift or reach infinite; the
+    /// tree is then unchanged.
     pub fn set_leaf_bounds(
         &mut self,
         bounds_of: impl Fn(Node<'_>) -> LeafBounds + Sync,

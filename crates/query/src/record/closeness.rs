@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Closeness {
-    /// Points below this share of the largest probability add nothing but noise; between 0 and 1.
+    /// Points below this share of the largest probability add nothing but noise; more than 0 and less than 1.
     pub share_of_max: f64,
     /// Points nearer than this many spacings share the samples their position was estimated from, and
     /// count once; not negative.
