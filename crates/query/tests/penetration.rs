@@ -52,7 +52,7 @@ fn a_box_in_a_box_leaves_across_the_nearest_face_and_is_free_there() {
     for kinds in KINDS {
         for depth in [0.02, 0.05] {
             let pose = turned(Vector3::new(0.02, -0.01, depth - SIZE));
-            let mut upward: Vec<f64> = (0..5)
+            let mut upward: Vec<f64> = (0..11)
                 .map(|draw| {
                     let out = out_of_draw(draw, kinds, &pose, 0.1);
                     let error = out.distance_m - depth;
@@ -65,9 +65,9 @@ fn a_box_in_a_box_leaves_across_the_nearest_face_and_is_free_there() {
                 })
                 .collect();
             upward.sort_by(f64::total_cmp);
-            // Mostly within 22 degrees: near an edge of the boxes a way aside of the normal is likely enough out a
+            // Mostly within 18 degrees: near an edge of the boxes a way aside of the normal is likely enough out a
             // little sooner, by less than the samples tell.
-            assert!(upward[2] > 0.93 && upward[0] > 0.77, "{kinds:?} {depth} {upward:?}");
+            assert!(upward[5] > 0.95 && upward[0] > 0.77, "{kinds:?} {depth} {upward:?}");
         }
     }
 }

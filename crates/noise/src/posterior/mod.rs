@@ -133,7 +133,7 @@ fn given_surface(
     let own_variance = patch.own_variance(&surface.normal);
     let blur = blur(noise.sqrt(), around);
     let is_trusted = is_near(surface, own_variance, settings)
-        || (blur == 1.0 && is_chance(surface, patch, own_variance + prior.min(noise)));
+        || is_chance(surface, patch, own_variance + prior.min(noise));
     if !is_trusted {
         prior += surface.height.powi(2);
     }
