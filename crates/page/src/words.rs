@@ -46,9 +46,10 @@ pub fn unseen(unseen: &Unseen) -> String {
     format!("{} of the {}: {}", percent(unseen.share()), unseen.body, shares.join(", "))
 }
 
-/// Rounded up, as in the warning: what is above the share allowed is not told as if it were not.
+/// Rounded up, as in the warning: what is above the share allowed is not told as if it were not; the last digit of
+/// a product is no share (7 % of 0.07, not 8).
 fn percent(share: f64) -> String {
-    format!("{:.0} %", (100.0 * share).ceil())
+    format!("{:.0} %", (100.0 * share - 1e-9).ceil())
 }
 
 /// What a verdict means, in a sentence.
@@ -93,7 +94,8 @@ mod tests {
 
     #[test]
     fn a_share_above_the_one_allowed_was_told_as_that_one() {
-        assert_eq!([0.0, 0.001, 0.052, 1.0].map(percent), ["0 %", "1 %", "6 %", "100 %"]);
+        let told = [0.0, 0.001, 0.052, 0.07, 1.0].map(percent);
+        assert_eq!(told, ["0 %", "1 %", "6 %", "7 %", "100 %"]);
     }
 
     #[test]

@@ -64,7 +64,7 @@ impl Warning {
                 length(step_m)
             ),
             Self::SensorPose { body, share } => part(
-                ((100.0 * share).ceil(), "points", body),
+                (percent_from(share), "points", body),
                 "are beside or behind the camera stated for it:",
             ),
             Self::SensorTurn { body, share } => part(
@@ -106,9 +106,9 @@ impl Warning {
                 format!("the object is {size} across and the scene {other}:")
             }
             Self::Unseen { body, share, limit } => {
-                let limit = 100.0 * limit;
-                let lies = format!("lies where the sensor saw nothing (allowed: {limit:.0} %):");
-                part(((100.0 * share).ceil(), "surface", body), &lies)
+                let limit = rounded(100.0 * limit);
+                let lies = format!("lies where the sensor saw nothing (allowed: {limit} %):");
+                part((percent_from(share), "surface", body), &lies)
             }
             Self::CloseBehind { body, share, limit } => {
                 let [share, limit] = [share, limit].map(|part| 100.0 * part);
@@ -207,6 +207,12 @@ impl Warning {
 /// What so many percent of the points, or the like, of a body do.
 fn part((percent, what, body): (f64, &str, Which), does: &str) -> String {
     format!("{percent:.0} % of the {what} of the {body} {does}")
+}
+
+/// Rounded up, so that what is above the share allowed is not told as if it were not; the last
+/// digit of a product is no share (7 % of 0.07, not 8).
+fn percent_from(share: f64) -> f64 {
+    (100.0 * share - 1e-9).ceil()
 }
 
 /// A length with as many digits as help.
