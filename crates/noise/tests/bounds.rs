@@ -2,7 +2,8 @@
 
 use cloudtouch_geom::{Covariance, Matrix3, Point3, seed};
 use cloudtouch_noise::{
-    Combination, Neighborhoods, NoiseModel, NoiseSettings, PosteriorSettings, Scratch, SensorNoise,
+    Combination, Neighborhoods, NoiseModel, NoiseSettings, PosteriorSettings, Representatives,
+    Scratch, SensorNoise, spacings_at,
 };
 use proptest::prelude::*;
 
@@ -20,15 +21,19 @@ fn any_covariance() -> impl Strategy<Value = Covariance> {
     })
 }
 
-/// Points with their noise: a rough sheet, lattice points, duplicates and far outliers together.
-fn any_cloud() -> impl Strategy<Value = Vec<(Point3, Covariance)>> {
+/// Of a rough sheet, a lattice (and so at times one that is there already), or a far outlier.
+fn any_point() -> impl Strategy<Value = Point3> + Clone {
     let lattice = prop::array::uniform3((-2..3_i32).prop_map(|v| 0.1 * f64::from(v)));
     let sheet = (-0.5..0.5_f64, -0.5..0.5_f64, -0.02..0.02_f64).prop_map(|(x, y, z)| [x, y, z]);
     let outlier = prop::array::uniform3(-5.0..5.0_f64);
-    let point = prop_oneof![6 => sheet, 2 => lattice, 1 => outlier].prop_map(Point3::from);
-    let rough = prop::collection::vec((point.clone(), any_covariance()), 1..120);
+    prop_oneof![6 => sheet, 2 => lattice, 1 => outlier].prop_map(Point3::from)
+}
+
+/// Points with their noise.
+fn any_cloud() -> impl Strategy<Value = Vec<(Point3, Covariance)>> {
+    let rough = prop::collection::vec((any_point(), any_covariance()), 1..120);
     // One noise for all is the common case, and the one in which fits succeed most.
-    let even = (prop::collection::vec(point, 1..120), any_covariance())
+    let even = (prop::collection::vec(any_point(), 1..120), any_covariance())
         .prop_map(|(points, noise)| points.into_iter().map(|p| (p, noise)).collect());
     prop_oneof![rough, even]
 }
@@ -74,6 +79,35 @@ proptest! {
                     Combination::SurfacePosterior => {}
                 }
             }
+        }
+    }
+
+    /// Points that stand for all where there are more than their noise can tell apart: copies, a lattice and strays too.
+    #[test]
+    fn points_that_stand_for_others_keep_their_bounds(
+        cloud in prop::collection::vec((any_point(), 0.5..2.0_f64), 60..200),
+        std in 0.02..0.5_f64,
+        cap in any_cap(),
+    ) {
+        let (points, parts): (Vec<_>, Vec<_>) = cloud.into_iter().unzip();
+        let noise: Vec<_> = parts.iter().map(|part| Covariance::isotropic((part * std).powi(2))).collect();
+        let sensor = SensorNoise::from(noise);
+        let index = Neighborhoods::new(points.clone()).unwrap();
+        let all: Vec<usize> = (0..points.len()).collect();
+        let spacings = spacings_at(&index, all.iter().copied());
+        let chosen = Representatives::choose(&index, &sensor, (&all, &spacings)).unwrap();
+        let model = model(Combination::SurfacePosterior);
+        let mut scratch = Scratch::default();
+        for i in chosen.iter().flat_map(Representatives::indices).map(|&i| i as usize) {
+            let kept = chosen.as_ref().expect("of these");
+            let refined = model.refine_representative(i, &index, kept, &sensor, cap, &mut scratch);
+            let bounds = model.bounds(sensor[i].max_std(), cap);
+            let shift = (refined.point.mean - points[i]).norm();
+            prop_assert!(shift <= bounds.shift + 1e-14, "{shift} {bounds:?}");
+            let largest = refined.point.covariance.max_std();
+            prop_assert!(largest <= bounds.std, "{largest} {bounds:?}");
+            prop_assert!(Covariance::try_from_matrix(&refined.point.covariance.matrix()).is_ok());
+            prop_assert!(refined.spacing >= 0.0 && refined.spacing <= cap);
         }
     }
 
