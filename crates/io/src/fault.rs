@@ -358,7 +358,7 @@ pub enum Fault {
         /// How many there are.
         found: usize,
     },
-    /// Points and faces in one file, and more points than corners of faces.
+    /// Points and faces in one file: more than a few vertices that no face uses.
     #[error(
         "{loose} of {vertices} vertices belong to no face: a file is a cloud or a mesh, so leave out the \
          faces, or the points beside them"

@@ -18,19 +18,43 @@ const MESH_PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\
     property int z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
     0 0 0\n1000 0 0\n0 1000 0\n3 0 1 2\n";
 
-/// A scan with one face was read as that face, and what stood in it was free.
+/// A scan with one face was read as that face, and what stood in it was free; so was one with faces among half of its
+/// points, and whoever asked for a mesh got one of any.
 #[test]
 fn points_beside_a_few_faces_are_not_lost_without_a_word() {
     let folder = TempDir::new().unwrap();
     let header = MESH_PLY.replace("vertex 3", "vertex 7");
     let mixed = header.replace("3 0 1 2\n", "0 0 1\n0 0 2\n0 0 3\n0 0 4\n3 0 1 2\n");
     let path = file(&folder, "mixed.ply", &mixed);
-    let message = read_geometry(&path, LengthUnit::Metres).unwrap_err().to_string();
-    for part in ["mixed.ply", "4 of 7 vertices belong to no face", "a cloud or a mesh"] {
-        assert!(message.contains(part), "{message}");
+    let errors = [
+        read_geometry(&path, LengthUnit::Metres).unwrap_err(),
+        read_mesh(&path, LengthUnit::Metres).unwrap_err(),
+    ];
+    for message in errors.map(|error| error.to_string()) {
+        for part in ["mixed.ply", "4 of 7 vertices belong to no face", "a cloud or a mesh"] {
+            assert!(message.contains(part), "{message}");
+        }
     }
-    // Who says that it is a mesh gets it.
-    assert_eq!(read_mesh(&path, LengthUnit::Metres).unwrap().triangles().len(), 1);
+}
+
+/// A fiftieth is too many to be left over; three are not, nor is one in a hundred.
+#[test]
+fn vertices_that_a_tool_left_behind_do_not_refuse_a_mesh() {
+    let folder = TempDir::new().unwrap();
+    let of = |faces: usize, loose: usize| {
+        let vertices = 3 * faces + loose;
+        let mut text = MESH_PLY.replace("vertex 3", &format!("vertex {vertices}"));
+        text = text.replace("face 1", &format!("face {faces}"));
+        text.truncate(text.find("0 0 0").unwrap());
+        (0..vertices).for_each(|i| text += &format!("{i} {} 0\n", i * i));
+        (0..faces).for_each(|i| text += &format!("3 {} {} {}\n", 3 * i, 3 * i + 1, 3 * i + 2));
+        let path = file(&folder, "of.ply", &text);
+        let mesh = read_mesh(&path, LengthUnit::Metres).map(|mesh| mesh.triangles().len());
+        let same = matches!(read_geometry(&path, LengthUnit::Metres), Ok(Geometry::Mesh(_)));
+        assert_eq!(mesh.is_ok(), same);
+        mesh.ok()
+    };
+    assert_eq!([of(1, 3), of(200, 6), of(200, 12)], [Some(1), Some(200), None]);
 }
 
 #[test]

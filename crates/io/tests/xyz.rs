@@ -65,6 +65,9 @@ fn a_comment_that_names_every_column_is_a_header() {
         // Words that are not one for each number are prose.
         "# x y z of the room, in metres\n1 2 3\n",
         "# z y x and an intensity\n1 2 3 9\n",
+        // The names are not always the last: these rows were read from their first column on.
+        "# index x y z\n# sensor: a camera\n9 1 2 3\n",
+        "# y x z\n# saved 2026\n2 1 3\n",
         // Only what stands before the first row.
         "1 2 3\n# y x z\n2 1 3\n",
     ] {

@@ -62,8 +62,11 @@ impl Robot {
         nesting::check(text)?;
         root::check(text, Wanted::Urdf)?;
         let read = |text: &str| {
-            urdf_rs::read_from_string(&essential(text)?)
-                .map_err(|error| RobotFault::Xml { reason: error.to_string() })
+            urdf_rs::read_from_string(&essential(text)?).map_err(|error| {
+                let reason = error.to_string();
+                // So the parser calls what it did not expect.
+                RobotFault::Xml { reason: reason.trim_start_matches("custom: ").to_owned() }
+            })
         };
         let urdf =
             read(text).map_err(|fault| at_fault::named(fault, text, |alone| read(alone).err()))?;

@@ -56,7 +56,10 @@ pub(crate) fn known(start: BytesStart<'_>) -> Result<BytesStart<'_>, RobotFault>
         let Some((_, count)) = NUMBERS.iter().find(|(known, _)| *known == own) else { continue };
         let words: Vec<&str> = value.split_whitespace().collect();
         if let Some(word) = words.iter().find(|word| word.parse::<f64>().is_err()) {
-            return fault(format!("`{own}` of <{name}> is `{value}`: `{word}` is not a number"));
+            let reason = format!(
+                "`{own}` of <{name}> is `{value}`: `{word}` is not a number; spaces are between numbers"
+            );
+            return fault(reason);
         }
         if words.len() != *count {
             let numbers = if *count == 1 { "number" } else { "numbers" };

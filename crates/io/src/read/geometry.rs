@@ -6,14 +6,10 @@ use cloudtouch_geom::{PointCloud, Pose};
 
 use super::cloud::read_scan_within;
 use super::file::{EVERYTHING, Parser, extension, read, unsupported};
+use super::mesh::without_points;
 use crate::{
-    error::ReadError,
-    fault::{Fault, FormatError, Place},
-    geometry::Geometry,
-    limits::ReadLimits,
-    obj, pcd, ply, stl,
-    unit::LengthUnit,
-    xyz,
+    error::ReadError, fault::FormatError, geometry::Geometry, limits::ReadLimits, obj, pcd, ply,
+    stl, unit::LengthUnit, xyz,
 };
 
 /// Reads a cloud or a mesh, whichever the file holds, and converts it from `unit` to metres.
@@ -22,8 +18,7 @@ use crate::{
 /// the sensor origin are converted.
 ///
 /// # Errors
-/// As [`read_cloud`](super::read_cloud) and [`read_mesh`](super::read_mesh); and when most vertices of a PLY belong to no face, for it may be
-/// a cloud as well as a mesh.
+/// As [`read_cloud`](super::read_cloud) and [`read_mesh`](super::read_mesh).
 pub fn read_geometry(path: impl AsRef<Path>, unit: LengthUnit) -> Result<Geometry, ReadError> {
     read_geometry_within(path, unit, &ReadLimits::default())
 }
@@ -46,7 +41,7 @@ pub fn read_geometry_within(
         }
         "stl" => |bytes, limits| stl::parse_within(bytes, limits).map(Geometry::Mesh),
         "obj" => |bytes, limits| obj::parse_within(bytes, limits).map(Geometry::Mesh),
-        "ply" => |bytes, limits| ply::parse_within(bytes, limits).and_then(one_of_both),
+        "ply" => |bytes, limits| ply::parse_within(bytes, limits).and_then(cloud_or_mesh),
         "mcap" => {
             let cloud = read_scan_within(path, limits)?.scan.cloud;
             return Ok(Geometry::Cloud(scaled_cloud(cloud, factor)));
@@ -59,16 +54,12 @@ pub fn read_geometry_within(
     })
 }
 
-/// Refuses a mesh most of whose vertices belong to no face: points would be lost without a word.
-fn one_of_both(geometry: Geometry) -> Result<Geometry, FormatError> {
-    if let Geometry::Mesh(mesh) = &geometry {
-        let (vertices, used) = (mesh.vertices().len(), mesh.used_vertices().count());
-        if 2 * used < vertices {
-            let fault = Fault::LoosePoints { loose: vertices - used, vertices };
-            return Err(Place::Line(1).error(fault));
-        }
+/// A mesh only where it is nothing else as well.
+fn cloud_or_mesh(geometry: Geometry) -> Result<Geometry, FormatError> {
+    match geometry {
+        Geometry::Mesh(mesh) => without_points(mesh).map(Geometry::Mesh),
+        cloud @ Geometry::Cloud(_) => Ok(cloud),
     }
-    Ok(geometry)
 }
 
 /// A cloud in another unit: positions, covariances and the place of the sensor times `factor`.

@@ -7,7 +7,7 @@ use crate::{
     text::{number, parse as parse_number},
 };
 
-/// Which columns are what, as the first row and the last comment before it show.
+/// Which columns are what, as the first row and the comments before it show.
 #[derive(Debug)]
 pub(super) struct Columns {
     /// `None` for white space.
@@ -26,20 +26,17 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    pub(super) fn of(
-        comment: Option<&[u8]>,
-        first: &[u8],
-        place: Place,
-    ) -> Result<Self, FormatError> {
+    pub(super) fn of(comments: &[&[u8]], first: &[u8], place: Place) -> Result<Self, FormatError> {
         let separator = separator(first);
         let is_number = |value| parse_number::<f64>(value).is_some();
         let is_header = !values(first, separator).next().is_none_or(is_number);
-        let named = match comment {
-            _ if is_header => Some(of_header(first, separator, place)?),
-            Some(comment) => {
-                of_comment(comment, first, separator).map_err(|fault| place.error(fault))?
-            }
-            None => None,
+        let named = if is_header {
+            Some(of_header(first, separator, place)?)
+        } else {
+            // The last of those that name columns: programs put other words below.
+            let mut named =
+                comments.iter().rev().map(|words| of_comment(words, first, separator).transpose());
+            named.find_map(|found| found).transpose().map_err(|fault| place.error(fault))?
         };
         let is_named = named.is_some();
         // A comment has as many names as this row has numbers.

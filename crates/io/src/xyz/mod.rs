@@ -20,7 +20,7 @@ use self::unnamed::{refuse_a_count, refuse_many_columns};
 /// Values are separated by semicolons, or else by commas, or else by white space, as the first
 /// line that is neither blank nor a comment (from `#`) shows. When the first value of that line is
 /// not a number it names the columns: x, y, z and perhaps cov_xx, cov_xy, cov_xz, cov_yy, cov_yz,
-/// cov_zz (m², all six or none), in any order and case; so does the last comment before it, when it has x, y
+/// cov_zz (m², all six or none), in any order and case; so does the last comment before it that has x, y
 /// and z among as many words as the line has numbers. `x (m)` and `x [m]` are x, and so is `Points:0` of
 /// ParaView; another unit there is refused. Without names the first three columns are x, y, z.
 /// Other columns are passed over, and separators between quotes are a part of the text there. `nan` is a missing
@@ -48,10 +48,10 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
         return Err(Place::Whole.error(Fault::Utf16));
     }
     let mut lines = Lines::new(bytes);
-    let (comment, first) = first_row(&mut lines);
+    let (comments, first) = first_row(&mut lines);
     let first = first.ok_or_else(|| Place::Whole.error(Fault::Empty))?;
     let first_place = lines.place();
-    let columns = Columns::of(comment, first, first_place)?;
+    let columns = Columns::of(&comments, first, first_place)?;
 
     let mut pending = (!columns.is_header).then_some(first);
     let mut cloud = CloudBuilder::new(&columns.places, 0, limits);
@@ -82,21 +82,21 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
     Ok(cloud)
 }
 
-/// The first line with something in it, and the last comment before it.
-fn first_row<'a>(lines: &mut Lines<'a>) -> (Option<&'a [u8]>, Option<&'a [u8]>) {
-    let mut comment = None;
+/// The first line with something in it, and the comments before it.
+fn first_row<'a>(lines: &mut Lines<'a>) -> (Vec<&'a [u8]>, Option<&'a [u8]>) {
+    let mut comments = Vec::new();
     for line in lines.by_ref() {
         match line.strip_prefix(b"#") {
-            Some(words) => comment = Some(words),
+            Some(words) => comments.push(words),
             None => {
                 let row = line.split(|&b| b == b'#').next().unwrap_or_default().trim_ascii();
                 if !row.is_empty() {
-                    return (comment, Some(row));
+                    return (comments, Some(row));
                 }
             }
         }
     }
-    (comment, None)
+    (comments, None)
 }
 
 /// The next line with something in it, without its comment.

@@ -173,7 +173,7 @@ class Cloud:
         if image_size is not None:
             width, height = image_size
             rows = rows.reshape(height, width, 3)
-        if sensor == "per-point":
+        if isinstance(sensor, str) and sensor.strip() == "per-point":
             others.setdefault("covariances", covariances)
         with _naming(path):
             return cls(rows, sensor=sensor, sensor_pose=pose if sensor_pose is None else sensor_pose, **others)

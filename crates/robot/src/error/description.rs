@@ -77,8 +77,8 @@ pub enum RobotFault {
     Empty,
     /// Not XML, or not of its schema.
     #[error(
-        "cannot be understood: {reason}; numbers of one attribute are separated by spaces, and a .xacro \
-         is expanded first, with `xacro arm.xacro > arm.urdf`"
+        "cannot be understood: {reason}; if it is made from a .xacro, expand that first, with \
+         `xacro arm.xacro > arm.urdf`"
     )]
     Xml {
         /// What the parser said.
