@@ -9,8 +9,10 @@ use crate::surface::reweight::{TUKEY_CUT, sums, tukey};
 /// The variance of standard normal residuals weighted by Tukey factors that end at
 /// [`TUKEY_CUT`]: ∫ t x² φ / ∫ t φ with t = (1 − x²/9)².
 const TUKEY_VARIANCE: f64 = 0.632;
-/// Neighbours so many standard deviations away show all of the noise: nearer ones are near because it is small.
-const MOST_SEEN: f64 = 3.0;
+/// What is so many standard deviations less than expected was not left by chance.
+const SELDOM: f64 = 2.5;
+/// The squared radius of a ball over the variance of places all over it, along any axis.
+const BALL: f64 = 5.0;
 /// The largest variance of the normal that still says where the surface faces: about 20°.
 const MOST_TILT_VARIANCE: f64 = 0.125;
 
@@ -246,18 +248,18 @@ impl HeightError {
     }
 
     /// How much of a noise of this variance the residuals do not show, m²: all of it where they are nothing, less the
-    /// more they vary, and none where by chance as little is left once in thirty thousand times. Neighbours no farther away
-    /// than the square root of `reach` (m²) show no more of it than that lets them.
+    /// more they vary, and none where by chance as little is left once in 160 times ([`SELDOM`]). Neighbours no
+    /// farther away than the square root of `reach` (m²) show no more of it than a ball so large lets them.
     ///
-    /// χ² of k degrees, over k, is less than (1 − 2/9k − 4 √(2/9k))³ so seldom (Wilson and Hilferty, 1931).
+    /// χ² of k degrees, over k, is less than (1 − 2/9k − 2.5 √(2/9k))³ so seldom (Wilson and Hilferty, 1931).
     pub(crate) fn shared(&self, noise: f64, reach: f64) -> f64 {
         if self.beyond >= 0.0 {
             return 0.0;
         }
         // √(2/k).
         let chance = self.chance / noise;
-        let by_chance = (1.0 - chance * chance / 9.0 - 4.0 / 3.0 * chance).max(0.0).powi(3);
-        let in_reach = (reach / (MOST_SEEN * MOST_SEEN * noise)).min(1.0);
+        let by_chance = (1.0 - chance * chance / 9.0 - SELDOM / 3.0 * chance).max(0.0).powi(3);
+        let in_reach = reach / (reach + BALL * noise);
         let seen = 1.0 + self.beyond / noise;
         let least = by_chance * in_reach;
         if seen < least { noise * (1.0 - seen / least) } else { 0.0 }
