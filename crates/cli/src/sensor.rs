@@ -85,10 +85,10 @@ fn is_all_around(cloud: &PointCloud) -> bool {
 
 /// A file does not say which sensor made it: this is a guess from its layout and extent.
 pub fn suggestion(cloud: &PointCloud) -> Chosen {
-    let (far_from_origin, extent) = match cloud.bounding_box() {
-        Some((low, high)) => (low.coords.amax().min(high.coords.amax()) > 1e4, (high - low).amax()),
-        None => (false, 0.0),
-    };
+    let far_from_origin = cloud
+        .bounding_box()
+        .is_some_and(|(low, high)| low.coords.amax().min(high.coords.amax()) > 1e4);
+    let extent = extent(cloud);
     let (sensor, because) = if cloud.covariances.is_some() {
         (SensorModel::PerPoint, "the file has covariance columns")
     } else if far_from_origin {
@@ -103,6 +103,23 @@ pub fn suggestion(cloud: &PointCloud) -> Chosen {
         (SensorModel::Isotropic { std: 0.005 }, "nothing in the file tells")
     };
     Chosen { sensor, because: Some(because) }
+}
+
+/// The longest side of a box around all returns but a hundredth at either end of each axis, m: a few strays are no laser scan.
+fn extent(cloud: &PointCloud) -> f64 {
+    const ONE_STRAY_OF: usize = 100;
+    let side = |axis: usize| {
+        let returns = cloud.points.iter().filter(|point| PointCloud::is_return(point));
+        let mut places: Vec<f64> = returns.map(|point| point[axis]).collect();
+        if places.is_empty() {
+            return 0.0;
+        }
+        let strays = places.len() / ONE_STRAY_OF;
+        let last = places.len() - 1 - strays;
+        let mut at = |rank: usize| *places.select_nth_unstable_by(rank, f64::total_cmp).1;
+        at(last) - at(strays)
+    };
+    [0, 1, 2].map(side).into_iter().fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -130,5 +147,19 @@ mod tests {
         assert_eq!(suggestion(&scan(full / 6.0, [0.0; 3])).sensor, SensorModel::Kinect);
         // In another frame nobody knows: a camera, whose place is then asked for.
         assert_eq!(suggestion(&scan(full, [0.0, 0.0, 3.0])).sensor, SensorModel::Kinect);
+    }
+
+    /// One point 10 m off made a table top a laser scan.
+    #[test]
+    fn a_few_strays_were_taken_for_the_extent() {
+        let table = |strays: usize| {
+            let at = |i: usize| Point3::new(0.01 * (i % 60) as f64, 0.01 * (i / 60) as f64, 0.8);
+            let far = (0..strays).map(|i| Point3::new(0.0, i as f64, 10.0));
+            PointCloud::from_points((0..3600).map(at).chain(far).collect())
+        };
+        let small = SensorModel::Isotropic { std: 0.005 };
+        assert_eq!([0, 1, 20].map(|strays| suggestion(&table(strays)).sensor), [small; 3]);
+        assert_eq!(suggestion(&table(400)).sensor, LASER);
+        assert_eq!(suggestion(&PointCloud::from_points(Vec::new())).sensor, small);
     }
 }

@@ -174,6 +174,20 @@ fn what_cannot_be_represented_is_refused() {
     ));
 }
 
+/// Where its disparity is three standard deviations.
+#[test]
+fn the_depth_of_a_stereo_camera_is_told_as_far_as_it_errs_by_a_third() {
+    let sensor: SensorModel = "stereo:0.1,300,0.08".parse().unwrap();
+    let depth = sensor.farthest();
+    assert!((depth - 125.0).abs() < 1e-9);
+    let std = at("stereo:0.1,300,0.08", Point3::new(0.0, 0.0, depth)).matrix()[(2, 2)].sqrt();
+    assert!((std - depth / 3.0).abs() < 1e-9);
+    for all_of_it in ["stereo:0.1,300,0", "kinect", "tof:0.01,0.1", "iso:5", "lidar:0.02,0.003"] {
+        let sensor: SensorModel = all_of_it.parse().unwrap();
+        assert_eq!(sensor.farthest(), f64::INFINITY, "{all_of_it}");
+    }
+}
+
 proptest! {
     #[test]
     fn lidar_noise_turns_with_the_scene(

@@ -56,6 +56,14 @@ impl<'a> Shape<'a> {
         (high - low).norm()
     }
 
+    /// The same but for a few strays of a cloud that are far from all else.
+    pub(crate) fn core_size(&self) -> f64 {
+        match self {
+            Self::Cloud(cloud) => cloud.makeup().core,
+            Self::Mesh(_) => self.size(),
+        }
+    }
+
     /// Of the ball about the middle of its samples that holds them, if that is smaller: the same however the file is
     /// turned, which the box is not.
     pub(crate) fn breadth(&self) -> f64 {

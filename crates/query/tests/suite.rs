@@ -60,6 +60,7 @@ mod slips_of_sensors;
 mod solved_tightly;
 mod sparse_frames;
 mod stairs;
+mod strays;
 mod swap;
 mod taken_for_robot;
 mod thin_mesh;

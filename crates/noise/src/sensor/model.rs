@@ -71,6 +71,17 @@ impl SensorModel {
         matches!(self, Self::Stereo { .. } | Self::Kinect | Self::TimeOfFlight { .. })
     }
 
+    /// Where the depth of a stereo camera errs by a third of itself, m: a disparity of three standard deviations, and
+    /// farther away it is not told from none. Infinite for all others.
+    pub fn farthest(&self) -> f64 {
+        match *self {
+            Self::Stereo { baseline, focal_px, disparity_std } => {
+                baseline * focal_px / (3.0 * disparity_std)
+            }
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Checks the values of the model.
     ///
     /// # Errors

@@ -138,7 +138,7 @@ fn of_sensor(body: Which, shape: Shape<'_>) -> impl Iterator<Item = Warning> {
 
 fn units((a, b): (Shape<'_>, Shape<'_>), are_alone: bool) -> Option<Warning> {
     let of = |body, shape: Shape<'_>, other: Shape<'_>| {
-        let (size_m, other_size_m) = (shape.size(), other.size());
+        let (size_m, other_size_m) = (shape.core_size(), other.core_size());
         let is_mesh = matches!(shape, Shape::Mesh(_));
         let is_object = body == Which::B;
         let is_beside_cloud = !are_alone && matches!(other, Shape::Cloud(_));

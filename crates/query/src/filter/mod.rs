@@ -20,7 +20,7 @@ use serde::Serialize;
 
 use crate::error::FilterError;
 
-pub(crate) use range::is_return_to;
+pub(crate) use range::{is_return_to, measured};
 pub use self_points::SelfMesh;
 pub use settings::{FilterSettings, OutlierSettings, VeilSettings};
 pub(crate) use taken::Taken;
@@ -52,7 +52,9 @@ pub struct Filtered {
 /// Runs the stages that `settings` asks for, cheapest first.
 ///
 /// Rows with a coordinate that is NaN, infinite or beyond ±1e30 m always go: missing returns. So do rows at
-/// the origin or at the place of the sensor, one in an image and three elsewhere, which stand for none. A stage that has nothing to work with (no
+/// the origin or at the place of the sensor, one in an image and three elsewhere, which stand for none, and, by the
+/// stage `range`, returns so far from a stereo camera that no disparity tells how far ([`SensorModel::farthest`]), unless
+/// these are more than a tenth. A stage that has nothing to work with (no
 /// image layout and no neighbours, for instance) removes nothing. Every stage can only remove
 /// points, so each can hide a true obstacle; the counts tell how many points that concerns. The `sensor` tells how far a
 /// surface may be off a line for noise, by which steep surfaces and veils are told apart.
@@ -65,7 +67,8 @@ pub fn filter(
     settings: &FilterSettings,
     sensor: &SensorModel,
 ) -> Result<Filtered, FilterError> {
-    Ok(filter_and_tell(cloud, settings, sensor)?.0)
+    let measured = measured(cloud, settings, sensor);
+    Ok(filter_and_tell(cloud, measured.as_ref().unwrap_or(settings), sensor)?.0)
 }
 
 /// Rows that went, of those a view has to know, in order.

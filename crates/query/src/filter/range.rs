@@ -2,6 +2,8 @@
 
 use cloudtouch_geom::{Point3, PointCloud};
 
+use cloudtouch_noise::SensorModel;
+
 use super::FilterSettings;
 
 /// No camera and no laser scanner sees nearer, m.
@@ -25,6 +27,25 @@ impl FilterSettings {
     pub fn unstated_min_range(&self, cloud: &PointCloud) -> Option<f64> {
         (self.min_range.is_none() && cloud.is_image()).then_some(NEAREST)
     }
+}
+
+/// What is so far from its camera that a disparity does not tell how far was not measured: the settings without it, where
+/// some returns are and more than one in ten would be too, they are from elsewhere, or in another unit.
+pub(crate) fn measured(
+    cloud: &PointCloud,
+    settings: &FilterSettings,
+    sensor: &SensorModel,
+) -> Option<FilterSettings> {
+    const MOST: usize = 10;
+    let max_range = sensor.farthest();
+    let place = cloud.sensor_origin();
+    let is_beyond = |p: &&Point3| PointCloud::is_return(p) && (*p - place).norm() > max_range;
+    if max_range >= settings.max_range {
+        return None;
+    }
+    let beyond = cloud.points.iter().filter(is_beyond).count();
+    let are_few = beyond > 0 && MOST * beyond <= cloud.len();
+    are_few.then(|| FilterSettings { max_range, ..settings.clone() })
 }
 
 pub(super) fn keep_in_range(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &FilterSettings) {

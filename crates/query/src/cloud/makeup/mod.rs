@@ -29,6 +29,10 @@ const LINE_SHARE: f64 = 1e-6;
 const MOST_BESIDE: f64 = 0.01;
 /// No sensor has more of its robot before it than this share of what it measures.
 const MOST_ROBOT: f64 = 0.5;
+/// One point of so many may be a stray, ...
+const ONE_STRAY_OF: usize = 50;
+/// ... if the cloud is so many times as large as without them.
+const FAR_LARGER: f64 = 4.0;
 /// A structured-light camera sees no farther, m: its fit ends at 3 m, its returns at some 8 m.
 const KINECT_RANGE: f64 = 10.0;
 
@@ -64,6 +68,8 @@ pub(crate) enum SensorDoubt {
 pub(crate) struct Makeup {
     /// Corners of the box around the points in the local frame, m.
     pub corners: [Point3; 2],
+    /// How large it is but for a few far strays, m.
+    pub core: f64,
     /// Typical distance of neighbours, m; zero for a single point.
     pub spacing: f64,
     /// Median of the standard deviations, each the largest of its point, m.
@@ -98,6 +104,7 @@ impl Makeup {
         let std = median(sample.indices.iter().map(|&i| noise[i].max_std()));
         Self {
             corners,
+            core: core((corners[1] - corners[0]).norm(), points, &sample.indices),
             spacing: typical_of_spacings(sample.spacings(kept)),
             std,
             clumps: clumps(kept, &sample.indices),
@@ -115,6 +122,18 @@ impl Makeup {
     pub(crate) fn size(&self) -> f64 {
         (self.corners[1] - self.corners[0]).norm()
     }
+}
+
+/// Size of the box around a cloud, m, or of the ball about the median of its sample that holds all but one in fifty, if
+/// that is far smaller: stereo cameras deliver returns hundreds of metres away where nothing is.
+fn core(size: f64, points: &[Point3], sample: &[usize]) -> f64 {
+    let middle = [0, 1, 2].map(|axis| median(sample.iter().map(|&i| points[i][axis])));
+    let mut away: Vec<f64> =
+        sample.iter().map(|&i| (points[i] - Point3::from(middle)).norm()).collect();
+    away.sort_unstable_by(f64::total_cmp);
+    let held = away.len().saturating_sub(1 + away.len() / ONE_STRAY_OF);
+    let core = away.get(held).map_or(size, |radius| 2.0 * radius);
+    if size > FAR_LARGER * core && core > 0.0 { core } else { size }
 }
 
 /// Share of the rows of a scan without return, where its layout does not tell where they would be.

@@ -13,7 +13,7 @@ use cloudtouch_noise::{Combination, SensorNoise};
 
 use crate::check::coordinates::{bad_entry, check_points};
 use crate::error::PrepareError;
-use crate::filter::{Filtered, StageReport, Taken, filter_and_tell};
+use crate::filter::{Filtered, StageReport, Taken, filter_and_tell, measured};
 
 use self::noise::{coarse_step, joined, noise_of, padded};
 use self::others::{beyond_range, other_returns};
@@ -95,6 +95,8 @@ impl Scans {
         if let Some(value) = scan.sensor_pose.as_ref().and_then(bad_entry) {
             return Err(PrepareError::SensorPose { value });
         }
+        let measured = measured(scan, by.filter, by.sensor);
+        let by = Preparation { filter: measured.as_ref().unwrap_or(by.filter), ..by };
         let (Filtered { cloud: kept, rows, stages }, removed) =
             filter_and_tell(scan, by.filter, by.sensor)?;
         if kept.is_empty() {
