@@ -7,6 +7,7 @@ mod change;
 mod close_behind;
 mod common;
 mod contacts;
+mod copies;
 mod crossing_pieces;
 mod deadline;
 mod dense_noise;

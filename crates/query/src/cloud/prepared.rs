@@ -13,6 +13,7 @@ use crate::filter::StageReport;
 
 use super::local::{local, origin_for};
 use super::makeup::Makeup;
+use super::makeup::copies::without_copies;
 use super::makeup::median::median;
 use super::makeup::scatter::{Overstated, Scatter, scatter};
 use super::makeup::spread::{Sample, sample_of};
@@ -74,7 +75,17 @@ impl Prepared {
             let stages = "no scan was given".to_owned();
             return Err(PrepareError::NothingLeft { before: count, stages });
         };
-        let mut prepared = Self::of_scans(all, NoiseModel::new(by.noise)?, by.tree, None, weigh)?;
+        let noise = NoiseModel::new(by.noise)?;
+        let mut prepared = Self::of_scans(all, noise, by.tree, None, weigh)?;
+        let may_drop = weigh.is_none() && scans.iter().all(|(_, by)| by.filter.drop_duplicates);
+        // An image has each of its rays once.
+        if may_drop
+            && prepared.views.is_empty()
+            && let Some(kept) = without_copies(&prepared.neighborhoods, &prepared.makeup.places)
+        {
+            let once = prepared.scans.kept_once(&kept);
+            prepared = Self::of_scans(once, noise, by.tree, None, None)?;
+        }
         prepared.prepare_time = start.elapsed();
         Ok(prepared)
     }

@@ -17,7 +17,9 @@ pub struct FilterSettings {
     /// Points farther from the sensor than this are dropped, m; infinity keeps all.
     pub max_range: f64,
     /// Whether of points with exactly the same coordinates one alone is kept: the first, and of those that bring their
-    /// noise the least certain.
+    /// noise the least certain. Of a cloud without the rows and columns of an image of which a tenth or more is nearer
+    /// to another point than a two-hundredth of the spacing, as in a scan that was put together with itself after
+    /// rounding, [`Cloud::prepare`](crate::Cloud::prepare) keeps the first of these too.
     pub drop_duplicates: bool,
     /// The robot's own links: points inside one of them, or within its padding, are dropped, and these places count as
     /// seen to be empty. So they should stand on nothing and lean on nothing; points of what they hold and grasped

@@ -2,6 +2,7 @@
 
 mod bearing;
 pub(super) mod clumps;
+pub(super) mod copies;
 pub(super) mod layout;
 pub(super) mod median;
 mod panorama;

@@ -195,6 +195,14 @@ impl Scans {
         kind(self) == kind(other)
     }
 
+    /// The same without copies of points, as a stage that drops duplicates leaves it.
+    pub(super) fn kept_once(&self, kept: &[u32]) -> Self {
+        let before = self.points.len();
+        let mut once = self.kept(kept);
+        once.stages.push(StageReport { stage: "duplicates", before, removed: before - kept.len() });
+        once
+    }
+
     /// The same with only these points, given in order.
     pub(super) fn kept(&self, kept: &[u32]) -> Self {
         fn of<T: Copy>(all: &[T], kept: &[u32]) -> Vec<T> {
