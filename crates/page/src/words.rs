@@ -49,7 +49,7 @@ pub fn unseen(unseen: &Unseen) -> String {
 /// Rounded up, as in the warning: what is above the share allowed is not told as if it were not; the last digit of
 /// a product is no share (7 % of 0.07, not 8).
 fn percent(share: f64) -> String {
-    format!("{:.0} %", (100.0 * share - 1e-9).ceil())
+    format!("{:.0} %", (100.0 * share - 1e-9).max(0.0).ceil())
 }
 
 /// What a verdict means, in a sentence.

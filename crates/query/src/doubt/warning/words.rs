@@ -212,7 +212,7 @@ fn part((percent, what, body): (f64, &str, Which), does: &str) -> String {
 /// Rounded up, so that what is above the share allowed is not told as if it were not; the last
 /// digit of a product is no share (7 % of 0.07, not 8).
 fn percent_from(share: f64) -> f64 {
-    (100.0 * share - 1e-9).ceil()
+    (100.0 * share - 1e-9).max(0.0).ceil()
 }
 
 /// A length with as many digits as help.
