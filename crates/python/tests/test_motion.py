@@ -71,7 +71,8 @@ def test_a_pose_known_to_the_bit_is_the_plain_answer(floor, plate):
 
 
 def test_a_pose_known_roughly_is_in_doubt(floor, plate):
-    report, under = ct.Query().run_uncertain(floor, plate, lifted(0.02), [0.01, 0.01, 0.01, 0, 0, 0])
+    # As far off as it is known: two deviations off, P hangs on one of 29 poses.
+    report, under = ct.Query().run_uncertain(floor, plate, lifted(0.01), [0.01, 0.01, 0.01, 0, 0, 0])
     assert report.probability < 0.001 < 0.005 < under.probability < 0.1
     assert under.lower <= under.probability <= under.upper and under.poses in (7, 23, 26, 29)
     with pytest.raises(ct.CloudtouchError, match="covariance"):
