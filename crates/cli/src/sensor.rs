@@ -88,7 +88,6 @@ pub fn suggestion(cloud: &PointCloud) -> Chosen {
     let far_from_origin = cloud
         .bounding_box()
         .is_some_and(|(low, high)| low.coords.amax().min(high.coords.amax()) > 1e4);
-    let extent = extent(cloud);
     let (sensor, because) = if cloud.covariances.is_some() {
         (SensorModel::PerPoint, "the file has covariance columns")
     } else if far_from_origin {
@@ -97,7 +96,7 @@ pub fn suggestion(cloud: &PointCloud) -> Chosen {
         (SensorModel::Kinect, "a depth image; a stereo camera is noisier: iso:0.005")
     } else if cloud.is_image() {
         (LASER, "rows and columns all around the sensor, as of a laser scanner")
-    } else if extent > 4.0 {
+    } else if extent(cloud) > 4.0 {
         (LASER, "metres across, as a laser scan")
     } else {
         (SensorModel::Isotropic { std: 0.005 }, "nothing in the file tells")

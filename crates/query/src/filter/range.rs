@@ -29,8 +29,8 @@ impl FilterSettings {
     }
 }
 
-/// What is so far from its camera that a disparity does not tell how far was not measured: the settings without it, where
-/// some returns are and more than one in ten would be too, they are from elsewhere, or in another unit.
+/// The settings that drop what is too far for a disparity to tell how far; `None` where nothing is, or more than a tenth:
+/// that is from elsewhere, or in another unit.
 pub(crate) fn measured(
     cloud: &PointCloud,
     settings: &FilterSettings,
